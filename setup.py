@@ -1,0 +1,52 @@
+"""Build the native core: every ``.pyx`` file of the packages becomes an extension module beside it.
+
+``PYEMC_BUILD_ONLY=nml,hal`` limits the build to some packages; ``PYEMC_DEBUG=1`` builds with bounds checks.
+"""
+
+import os
+from pathlib import Path
+
+from Cython.Build import cythonize
+from setuptools import Extension, setup
+
+ROOT = Path(__file__).parent
+PACKAGES = ("nml", "hal", "rs274ngc", "emcmot")
+DEBUG = os.environ.get("PYEMC_DEBUG") == "1"
+DIRECTIVES = {
+    "language_level": "3",
+    "boundscheck": DEBUG,
+    "wraparound": False,
+    "initializedcheck": DEBUG,
+    "cdivision": True,
+    "embedsignature": True,
+}
+COMPILE_ARGS = ["-O2", "-ffp-contract=off", "-fno-math-errno", "-Wno-unused-function"]
+
+
+def extensions() -> list[Extension]:
+    """One extension for each ``.pyx`` below the packages that are to be built."""
+    only = os.environ.get("PYEMC_BUILD_ONLY")
+    wanted = only.split(",") if only else PACKAGES
+    found = []
+    for package in wanted:
+        for path in sorted((ROOT / package).rglob("*.pyx")):
+            relative = path.relative_to(ROOT)
+            found.append(
+                Extension(
+                    ".".join(relative.with_suffix("").parts),
+                    [str(relative)],
+                    extra_compile_args=COMPILE_ARGS,
+                    libraries=["pthread", "rt", "m"],
+                )
+            )
+    return found
+
+
+setup(
+    ext_modules=cythonize(
+        extensions(),
+        compiler_directives=DIRECTIVES,
+        nthreads=int(os.environ.get("PYEMC_BUILD_JOBS", "2")),
+        show_all_warnings=False,
+    )
+)
