@@ -3,7 +3,9 @@
 ``PYEMC_BUILD_ONLY=nml,hal`` limits the build to some packages; ``PYEMC_DEBUG=1`` builds with bounds checks.
 """
 
+import importlib
 import os
+import sys
 from pathlib import Path
 
 from Cython.Build import cythonize
@@ -23,12 +25,16 @@ DIRECTIVES = {
 COMPILE_ARGS = ["-O2", "-ffp-contract=off", "-fno-math-errno", "-Wno-unused-function"]
 
 
+def wanted_packages() -> tuple[str, ...]:
+    """The packages to build: all, or those that ``PYEMC_BUILD_ONLY`` names."""
+    only = os.environ.get("PYEMC_BUILD_ONLY")
+    return tuple(only.split(",")) if only else PACKAGES
+
+
 def extensions() -> list[Extension]:
     """One extension for each ``.pyx`` below the packages that are to be built."""
-    only = os.environ.get("PYEMC_BUILD_ONLY")
-    wanted = only.split(",") if only else PACKAGES
     found = []
-    for package in wanted:
+    for package in wanted_packages():
         for path in sorted((ROOT / package).rglob("*.pyx")):
             relative = path.relative_to(ROOT)
             found.append(
@@ -41,6 +47,19 @@ def extensions() -> list[Extension]:
             )
     return found
 
+
+def write_message_structs() -> None:
+    """Make emcmot/_messages.pxd from nml/emc/emcmot.py, with the pure Python part of nml in this source tree."""
+    sys.path.insert(0, str(ROOT))
+    try:
+        cheader = importlib.import_module("nml.cheader")
+        cheader.write_pxd(importlib.import_module("nml.emc.emcmot"), ROOT / "emcmot" / "_messages.pxd")
+    finally:
+        sys.path.remove(str(ROOT))
+
+
+if "emcmot" in wanted_packages():
+    write_message_structs()
 
 setup(
     ext_modules=cythonize(

@@ -169,7 +169,7 @@ class EMCMOT_COMMAND(Command, type_id=3001):
     pos = struct(EmcPose, unit="lu, deg", doc="end point of a move")
     center = struct(PmCartesian, unit="lu", doc="SET_CIRCLE")
     normal = struct(PmCartesian, doc="SET_CIRCLE: axis of the arc")
-    turn = integer(doc="SET_CIRCLE: full turns, as EMC_TRAJ_CIRCULAR_MOVE; RIGID_TAP and SET_LINE: locking indexer joint or -1")
+    turn = integer(doc="SET_CIRCLE: full turns, as EMC_TRAJ_CIRCULAR_MOVE; RIGID_TAP, SET_LINE: locking joint or -1")
     motion_type = integer(doc="EMC_MOTION_TYPE_*")
     vel = double(unit="lu/s", doc="requested path velocity before override; jog velocity (signed)")
     ini_maxvel = double(unit="lu/s", doc="path velocity that no override may exceed")
