@@ -348,4 +348,5 @@ class EMCMOT_ERROR(Status, type_id=3003):
 
     kind = integer(doc="11 error, 12 text, 13 display: the EMC_OPERATOR_* type to forward it as")
     joint = integer(doc="-1: no particular joint")
+    id = long(doc="motion id of the move that the text is about, where it reads `line <id>`; 0: no move")
     text = char(256)
