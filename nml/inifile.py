@@ -1,9 +1,9 @@
 """Reads INI files by LinuxCNC's rules and says where everything stands; used by every process of a controller.
 
 The rules, as Debian's ``inivar`` shows them: section and key names are case sensitive; a line is a comment when its
-first character that is not blank is ``#`` or ``;``, and there are no comments behind a value; a key without a value counts
-as absent; a key may be repeated (``findall``); a backslash at the end of a line joins the next one; only the first section
-of a name is searched. ``#INCLUDE file`` at the start of a line puts that file in its place.
+first character that is not blank is ``#`` or ``;``, and there are no comments behind a value; a key without a value
+counts as absent; a key may be repeated (``findall``); a backslash at the end of a line joins the next one; only the
+first section of a name is searched. ``#INCLUDE file`` at the start of a line puts that file in its place.
 
 A getter remembers what was read: ``unread()`` names the entries that nobody asked for, most often misspelt ones.
 """

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from nml.errors import ConfigError
 from nml.inifile import IniFile
 
@@ -48,12 +49,12 @@ def write(folder: Path, name: str, text: str) -> Path:
     return path
 
 
-@pytest.fixture()
+@pytest.fixture
 def rules(tmp_path: Path) -> IniFile:
     return IniFile(write(tmp_path, "rules.ini", RULES))
 
 
-@pytest.fixture()
+@pytest.fixture
 def numbers(tmp_path: Path) -> IniFile:
     return IniFile(write(tmp_path, "numbers.ini", NUMBERS))
 
