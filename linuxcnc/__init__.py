@@ -1,0 +1,15 @@
+"""``import linuxcnc``: status, commands, operator messages and INI values of a machine, under LinuxCNC's names.
+
+The classes talk to task through the NML buffers emcStatus, emcCommand and emcError of the namespace (``PYEMC_NAMESPACE``)
+and of the NML file that ``nmlfile`` names. The constants are in ``_constants``, with the numbers of LinuxCNC 2.9.
+"""
+
+from linuxcnc._command import command
+from linuxcnc._connection import error
+from linuxcnc._constants import *  # noqa: F403  every constant is public here
+from linuxcnc._error import error_channel
+from linuxcnc._ini import ini
+from linuxcnc._stat import stat
+from linuxcnc._stat import tool_result as tool
+
+__all__ = ["command", "error", "error_channel", "ini", "stat", "tool"]
