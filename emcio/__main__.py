@@ -1,0 +1,80 @@
+"""The command ``io -ini FILE``: the controller of E-stop, tools, coolant and lubrication, one process of a machine."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from emcio.controller import IoChannels, IoController
+from emcio.pins import make_component
+from emcio.sources import FileTools, NoTools, ToolSource
+from emcio.toolstore import ToolStore
+from nml.channel import Channel
+from nml.errors import ConfigError, PyemcError
+from nml.inifile import IniFile
+from nml.nmlfile import NmlConfig
+
+DEFAULT_CYCLE_S = 0.1
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run io until SIGTERM or a halt command; the exit code."""
+    parser = argparse.ArgumentParser(prog="io", description=__doc__)
+    parser.add_argument("-ini", metavar="FILE", default=os.environ.get("INI_FILE_NAME"), help="the machine's INI file")
+    options = parser.parse_args(arguments)
+    if not options.ini:
+        print("io: no INI file; give -ini FILE or set INI_FILE_NAME", file=sys.stderr)
+        return 1
+    try:
+        controller = build(IniFile(options.ini))
+    except PyemcError as error:
+        print(error, file=sys.stderr)
+        return 1
+
+    def stop(number: int, frame: object) -> None:
+        controller.running = False
+
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)
+    try:
+        controller.run()
+    finally:
+        controller.channels.close()
+        controller.pins.exit()  # type: ignore[attr-defined]
+    return 0
+
+
+def build(ini: IniFile) -> IoController:
+    """The controller that the INI file describes; ConfigError when it describes none."""
+    cycle_s = ini.real("EMCIO", "CYCLE_TIME", DEFAULT_CYCLE_S, maximum=10.0)
+    store = ToolStore(ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False))
+    source = tool_source(ini)
+    source.load(store)
+    config = NmlConfig.from_ini(ini)
+    channels = IoChannels(
+        commands=Channel(config, "toolCmd", process="tool"),
+        status=Channel(config, "toolSts", process="tool"),
+        table=Channel(config, "toolTable", process="tool"),
+        errors=Channel(config, "emcError", process="emc"),
+    )
+    return IoController(make_component(), store, source, channels, cycle_s if cycle_s > 0.0 else 0.001)
+
+
+def tool_source(ini: IniFile) -> ToolSource:
+    """Where this machine's tools come from."""
+    name = ini.find("EMCIO", "TOOL_TABLE")
+    if not name:
+        return NoTools()
+    path = Path(ini.path).resolve().parent / name
+    if not path.exists():
+        place = ini.place("EMCIO", "TOOL_TABLE")
+        raise ConfigError(f"[EMCIO]TOOL_TABLE = {name}: there is no such file; an empty one will do", place)
+    return FileTools(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,140 @@
+"""The tools in memory: which are in the table, which is in the spindle, and what a change does to them.
+
+Entry 0 is the spindle. On a nonrandom changer the other entries follow each other as the file lists them (their
+pocket numbers are only remarks of the user), a change **copies** the tool into entry 0, and tool 0 means an empty
+spindle. On a random changer the index of an entry is its pocket, a change **swaps** it with entry 0, and tool 0 is
+a tool like any other.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable
+
+from emcio.tooltable import Tool, ToolFile
+from nml.emc.tooltable import CANON_POCKETS_MAX, EMC_TOOL_TABLE
+from nml.errors import ConfigError
+
+NO_TOOL = -1
+
+
+class ToolStore:
+    """The table of one machine."""
+
+    def __init__(self, random: bool) -> None:
+        self.random = random
+        self.entries: list[Tool] = [Tool() for _ in range(CANON_POCKETS_MAX)]
+        self.last_index = 0
+        self.empty_spindle()
+
+    def empty_spindle(self) -> None:
+        """Nothing is in the spindle."""
+        self.entries[0] = Tool(toolno=NO_TOOL if self.random else 0)
+
+    def load(self, tools: Iterable[Tool], file: ToolFile | None = None) -> None:
+        """Take over what the file or the data base lists; the tool in a nonrandom spindle gets its new values.
+
+        ConfigError names the line with a number that this kind of changer does not allow; then nothing has changed.
+        """
+        entries = [Tool() for _ in range(CANON_POCKETS_MAX)]
+        entries[0] = self.entries[0]
+        last = 0
+        for tool in tools:
+            self._check(tool, file)
+            index = tool.pocketno if self.random else last + 1
+            if index >= CANON_POCKETS_MAX:
+                raise ConfigError(f"more than {CANON_POCKETS_MAX - 1} tools", file.place(tool.toolno) if file else None)
+            if self.random and entries[index].toolno != NO_TOOL and index:
+                raise ConfigError(
+                    f"pocket {index} holds T{entries[index].toolno} already; pockets of a random changer must differ",
+                    file.place(tool.toolno) if file else None,
+                )
+            entries[index] = tool.copy()
+            last = max(last, index)
+        self.entries = entries
+        self.last_index = last
+        in_spindle = self.entries[0].toolno
+        home = self.index_of(in_spindle) if not self.random and in_spindle > 0 else -1
+        if home > 0:
+            self._copy_to_spindle(home)
+
+    def _check(self, tool: Tool, file: ToolFile | None) -> None:
+        if self.random and not 0 <= tool.pocketno < CANON_POCKETS_MAX:
+            problem = f"P{tool.pocketno}: pockets of a random changer are 0 (spindle) to {CANON_POCKETS_MAX - 1}"
+        elif not self.random and tool.toolno < 1:
+            problem = f"T{tool.toolno}: tool numbers begin at 1 on a nonrandom changer (T0 is the empty spindle)"
+        elif tool.toolno < 0:
+            problem = f"T{tool.toolno}: tool numbers begin at 0"
+        else:
+            return
+        raise ConfigError(problem, file.place(tool.toolno) if file else None)
+
+    @property
+    def in_spindle(self) -> int:
+        """Number of the tool in the spindle; 0: none."""
+        return max(self.entries[0].toolno, 0)
+
+    def index_of(self, toolno: int) -> int:
+        """Index of a tool; -1: not in the table. The empty spindle of a nonrandom changer is index 0."""
+        if not self.random and toolno == 0:
+            return 0
+        first = 0 if self.random else 1
+        for index in range(first, self.last_index + 1):
+            if self.entries[index].toolno == toolno:
+                return index
+        return -1
+
+    def pocket_of(self, index: int) -> int:
+        """The changer's pocket of entry ``index``."""
+        return index if self.random else self.entries[index].pocketno if index else 0
+
+    def load_spindle(self, index: int) -> bool:
+        """The changer put tool ``index`` into the spindle; True when the table file must be written."""
+        if not self.random:
+            if index:
+                self._copy_to_spindle(index)
+            else:
+                self.empty_spindle()
+            return False
+        entries = self.entries
+        entries[0], entries[index] = entries[index], entries[0]
+        entries[0].pocketno = 0
+        entries[index].pocketno = index
+        return True
+
+    def _copy_to_spindle(self, index: int) -> None:
+        self.entries[0] = self.entries[index].copy()
+
+    def write(self, index: int, tool: Tool) -> None:
+        """G10 L1, L10, L11: new values for entry ``index``; the copy in a nonrandom spindle follows."""
+        entry = self.entries[index]
+        tool.pocketno, tool.remark = entry.pocketno, entry.remark
+        self.entries[index] = tool
+        if not self.random and index and tool.toolno == self.entries[0].toolno:
+            self._copy_to_spindle(index)
+
+    def listed(self) -> list[Tool]:
+        """The tools that belong into the file."""
+        first = 0 if self.random else 1
+        return [tool for tool in self.entries[first : self.last_index + 1] if tool.toolno != NO_TOOL]
+
+    def fill(self, message: EMC_TOOL_TABLE) -> None:
+        """Write the table into the message of the ``toolTable`` buffer."""
+        message.random = int(self.random)
+        message.last_index = self.last_index
+        base = EMC_TOOL_TABLE.field("tools")[1]
+        for index, tool in enumerate(self.entries):
+            _ENTRY.pack_into(
+                message.data,
+                base + index * _ENTRY.size,
+                tool.toolno,
+                tool.pocketno,
+                *tool.offset,
+                tool.diameter,
+                tool.frontangle,
+                tool.backangle,
+                tool.orientation,
+            )
+
+
+_ENTRY = struct.Struct("<ii12di4x")

@@ -1,0 +1,107 @@
+"""The tools in memory: nonrandom changers copy, random changers swap."""
+
+import pytest
+
+from emcio.toolstore import ToolStore
+from emcio.tooltable import Tool
+from nml.emc.tooltable import EMC_TOOL_TABLE
+from nml.errors import ConfigError
+
+TOOLS = [Tool(toolno=1, pocketno=17, diameter=1.0), Tool(toolno=5, pocketno=3, diameter=5.0)]
+
+
+def make(random: bool) -> ToolStore:
+    store = ToolStore(random)
+    store.load(TOOLS)
+    return store
+
+
+def test_nonrandom_entries_follow_the_file_and_keep_their_pocket_number():
+    store = make(random=False)
+    assert [store.index_of(1), store.index_of(5), store.index_of(2)] == [1, 2, -1]
+    assert store.pocket_of(1) == 17
+    assert store.last_index == 2
+
+
+def test_random_entries_lie_at_their_pocket():
+    store = make(random=True)
+    assert [store.index_of(1), store.index_of(5)] == [17, 3]
+
+
+def test_a_nonrandom_change_copies_and_the_file_stays_as_it_is():
+    store = make(random=False)
+    assert store.load_spindle(2) is False
+    assert store.in_spindle == 5
+    assert store.entries[2].toolno == 5
+    assert [t.toolno for t in store.listed()] == [1, 5]
+
+
+def test_tool_zero_empties_a_nonrandom_spindle():
+    store = make(random=False)
+    store.load_spindle(2)
+    assert store.index_of(0) == 0
+    store.load_spindle(0)
+    assert store.in_spindle == 0
+
+
+def test_a_random_change_swaps_and_must_be_saved():
+    store = make(random=True)
+    store.load_spindle(17)
+    assert store.load_spindle(3) is True
+    assert (store.in_spindle, store.entries[3].toolno) == (5, 1)
+    assert {t.toolno: t.pocketno for t in store.listed()} == {5: 0, 1: 3}
+
+
+def test_tool_zero_of_a_random_changer_is_a_tool_like_any_other():
+    store = ToolStore(random=True)
+    store.load([Tool(toolno=0, pocketno=4)])
+    assert store.index_of(0) == 4
+    assert make(random=True).index_of(0) == -1
+
+
+def test_new_values_reach_the_copy_in_a_nonrandom_spindle():
+    store = make(random=False)
+    store.load_spindle(1)
+    store.write(1, Tool(toolno=1, offset=[0, 0, 9.5, 0, 0, 0, 0, 0, 0]))
+    assert store.entries[0].offset[2] == 9.5
+    assert store.entries[1].pocketno == 17
+
+
+def test_reloading_gives_the_tool_in_the_spindle_its_new_values():
+    store = make(random=False)
+    store.load_spindle(2)
+    store.load([Tool(toolno=5, pocketno=3, diameter=6.5)])
+    assert (store.in_spindle, store.entries[0].diameter) == (5, 6.5)
+
+
+@pytest.mark.parametrize(
+    ("random", "tools", "complaint"),
+    [
+        (False, [Tool(toolno=0, pocketno=1)], "T0"),
+        (True, [Tool(toolno=1, pocketno=1001)], "P1001"),
+        (True, [Tool(toolno=1, pocketno=2), Tool(toolno=2, pocketno=2)], "pocket 2 holds T1 already"),
+    ],
+)
+def test_a_table_that_does_not_suit_the_changer_is_refused_and_nothing_changes(random, tools, complaint):
+    store = make(random)
+    with pytest.raises(ConfigError, match=complaint):
+        store.load(tools)
+    assert store.index_of(5) > 0
+
+
+def test_a_thousand_pockets_fit_and_one_more_does_not():
+    store = ToolStore(random=False)
+    store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1001)])
+    assert store.index_of(1000) == 1000
+    with pytest.raises(ConfigError, match="more than 1000"):
+        store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1002)])
+
+
+def test_the_published_message_tells_what_the_store_holds():
+    store = make(random=True)
+    message = EMC_TOOL_TABLE()
+    store.fill(message)
+    entry = message.tools[17]
+    assert (message.random, message.last_index) == (1, 17)
+    assert (entry.toolno, entry.pocketno, entry.diameter) == (1, 17, 1.0)
+    assert message.tools[16].toolno == -1
