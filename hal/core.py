@@ -14,6 +14,7 @@ from hal import _shm
 from hal._shm import IN, IO, OUT, PARAM, PIN, RW, Comp, Item, Segment, Signal
 from hal.process import alive, own_identity
 from hal.values import PIN_DIR_NAMES, TYPE_NAMES, parse_value
+from nml import clock
 from nml.errors import HalError
 
 EINVAL, ENOMEM, EPERM, EBUSY, ENOENT, EFAULT = -22, -12, -1, -16, -2, -14
@@ -21,6 +22,7 @@ EINVAL, ENOMEM, EPERM, EBUSY, ENOENT, EFAULT = -22, -12, -1, -16, -2, -14
 LOCK_NONE, LOCK_LOAD, LOCK_CONFIG, LOCK_PARAMS, LOCK_RUN = 0, 1, 2, 4, 8
 LOCK_TUNE = LOCK_LOAD | LOCK_CONFIG
 LOCK_ALL = 255
+STOP_SECONDS = 2
 
 NAME_LENGTH = 47
 
@@ -116,6 +118,15 @@ class Hal:
                     gone.append(comp.name)
                     self._remove(comp, safe=True)
         return gone
+
+    def forget_realtime(self) -> None:
+        """Remove all realtime components; for a host that has died."""
+        with self.segment as segment:
+            for comp in segment.comps():
+                if comp.kind != _shm.USER:
+                    self._remove(comp, safe=True)
+            segment.threads_running = False
+            segment.host = (0, 0)
 
     def host_state(self) -> tuple[int, bool]:
         """(pid, alive) of the realtime host; pid 0: none was started."""
@@ -304,6 +315,27 @@ class Hal:
             self.check_writers(pin, signal_name, members)
             if pin not in members:
                 members.append(pin)
+
+    # ---- threads ----
+
+    def start_threads(self) -> None:
+        """Let the threads call their functions."""
+        self._unlocked(LOCK_RUN, "starting")
+        self.segment.threads_running = True
+
+    def stop_threads(self) -> None:
+        """Stop calling functions; on return none of them runs any more."""
+        self._unlocked(LOCK_RUN, "stopping")
+        self.halt_threads()
+
+    def halt_threads(self) -> None:
+        """As `stop_threads`, whatever is locked."""
+        self.segment.threads_running = False
+        patience = clock.host_now() + STOP_SECONDS
+        while any(thread.running for thread in self.segment.threads()) and self.host_state()[1]:
+            if clock.host_now() > patience:
+                raise HalError(f"a realtime function has not returned for {STOP_SECONDS} s", EBUSY)
+            clock.host_sleep(0.0002)
 
     # ---- values by name, for scripts ----
 

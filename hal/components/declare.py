@@ -1,0 +1,174 @@
+"""How a native component is declared: pins, parameters, functions and texts in one table, for loading and for the docs.
+
+A component is a C struct whose first members are ``hal_pin``, one for each pin and parameter in the order of the table
+(an array member for a table entry with ``count``), then its own state, all zero at first; and functions of that struct:
+
+    cdef struct And2:
+        hal_pin in0, in1, out
+
+    cdef void and2(And2* s, long period) noexcept nogil:
+        at(s.out).b = at(s.in0).b and at(s.in1).b
+
+    declare("and2", "Two-input AND gate", sizeof(And2), [
+        pin_in(BIT, "in0"), pin_in(BIT, "in1"), pin_out(BIT, "out", "true when both inputs are true"),
+    ], {"": <size_t>&and2})
+
+A key of the functions is the name's part after the instance's; "" is the instance itself. `loadrt` takes ``count=`` or
+``names=``, as for LinuxCNC's components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from hal._shm import BIT, FLOAT, IN, IO, OUT, RO, RW, S32, S64, U32, U64
+from hal._threads import Memory
+from nml.errors import HalError
+
+if TYPE_CHECKING:
+    from hal.realtime import Component, Host
+
+WORD = 8  # bytes of a hal_pin
+DECLARED: dict[str, Declaration] = {}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A pin or parameter; ``count`` of them where the name contains a format field like ``{}`` or ``{:02}``."""
+
+    is_pin: bool
+    type: int
+    dir: int
+    name: str
+    doc: str = ""
+    default: Any = 0
+    count: int = 1
+    personal: Callable[[int], int] | None = None  # how many of ``count`` exist for a personality
+
+    def names(self, personality: int) -> Iterator[str]:
+        number = self.personal(personality) if self.personal else self.count
+        return (self.name.format(i) for i in range(number))
+
+
+def pin_in(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
+    return Entry(True, type_, IN, name, doc, default, **more)
+
+
+def pin_out(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
+    return Entry(True, type_, OUT, name, doc, default, **more)
+
+
+def pin_io(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
+    return Entry(True, type_, IO, name, doc, default, **more)
+
+
+def param_rw(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
+    return Entry(False, type_, RW, name, doc, default, **more)
+
+
+def param_ro(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
+    return Entry(False, type_, RO, name, doc, default, **more)
+
+
+@dataclass
+class Declaration:
+    """One component, as `declare` was given it."""
+
+    name: str
+    doc: str
+    size: int
+    entries: list[Entry]
+    functions: dict[str, int]
+    shared: dict[str, int] = field(default_factory=dict)
+    counted_by: str = "count"
+    default_count: int = 1
+    uses_fp: bool = True
+    separator: str = "."
+    personality: int | None = None  # the default, for components whose pins depend on it
+
+    def load(self, host: Host, args: dict[str, str]) -> None:
+        """``loadrt``: make every instance."""
+        self._check(args)
+        comp = host.component(self.name)
+        memories = []
+        personalities = _numbers(self.name, args.get("personality", ""))
+        for i, instance in enumerate(self.instances(args)):
+            personality = personalities[i] if i < len(personalities) else self.personality or 0
+            memories.append(self._instance(comp, instance, personality))
+        self._export_shared(comp, memories)
+        comp.ready()
+
+    def _check(self, args: dict[str, str]) -> None:
+        allowed = [self.counted_by, "names", *(["personality"] if self.personality is not None else [])]
+        for key in args:
+            if key not in allowed:
+                raise HalError(f"{self.name}: unknown parameter '{key}'; {', '.join(allowed)} are known")
+        if self.counted_by in args and "names" in args:
+            raise HalError(f"{self.name}: {self.counted_by}= and names= cannot be given together")
+
+    def instances(self, args: dict[str, str]) -> list[str]:
+        """The instances' names."""
+        if "names" in args:
+            return [name for name in args["names"].split(",") if name]
+        text = args.get(self.counted_by, str(self.default_count))
+        try:
+            count = int(text, 0)
+        except ValueError:
+            count = 0
+        if count < 1:
+            raise HalError(f"{self.name}: {self.counted_by}={text}: a whole number from 1 would be right")
+        return [f"{self.prefix}.{i}" for i in range(count)]
+
+    @property
+    def prefix(self) -> str:
+        return self.name.replace("_", "-")
+
+    def _instance(self, comp: Component, instance: str, personality: int) -> Memory:
+        memory = Memory(self.size)
+        comp.keep(memory)
+        offset = 0
+        for entry in self.entries:
+            make = comp.pin if entry.is_pin else comp.param
+            for i, name in enumerate(entry.names(personality)):
+                item = make(f"{instance}{self.separator}{name}", entry.type, entry.dir, entry.default)
+                memory.put(offset + i * WORD, item.address)
+            offset += entry.count * WORD
+        for suffix, code in self.functions.items():
+            name = f"{instance}.{suffix}" if suffix else instance
+            comp.function(name, code, memory.address, uses_fp=self.uses_fp)
+        return memory
+
+    def _export_shared(self, comp: Component, memories: list[Memory]) -> None:
+        """Functions for all instances at once; their argument is a count and that many addresses."""
+        if not self.shared:
+            return
+        everyone = Memory((len(memories) + 1) * WORD)
+        comp.keep(everyone)
+        everyone.put(0, len(memories))
+        for i, memory in enumerate(memories):
+            everyone.put((i + 1) * WORD, memory.address)
+        for suffix, code in self.shared.items():
+            comp.function(f"{self.prefix}.{suffix}", code, everyone.address, uses_fp=self.uses_fp)
+
+
+def _numbers(component: str, text: str) -> list[int]:
+    try:
+        return [int(word, 0) for word in text.split(",") if word]
+    except ValueError:
+        raise HalError(f"{component}: personality={text}: whole numbers with commas would be right") from None
+
+
+def declare(name: str, doc: str, size: int, entries: list[Entry], functions: dict[str, int], **more: Any) -> None:
+    """Make a component known; the struct must begin with the pins of the table."""
+    words = sum(entry.count for entry in entries)
+    if size < words * WORD:
+        raise AssertionError(f"{name}: a struct of {size} bytes has no room for {words} pins")
+    DECLARED[name] = Declaration(name, doc, size, entries, functions, **more)
+
+
+__all__ = [
+    "BIT", "FLOAT", "S32", "S64", "U32", "U64",
+    "declare", "param_ro", "param_rw", "pin_in", "pin_io", "pin_out",
+]  # fmt: skip

@@ -1,0 +1,123 @@
+"""The realtime host process, ``python -m hal.host``: takes requests for its threads and modules over a Unix socket.
+
+It is started by ``hal.client`` with a listening socket as file descriptor 3, one for each namespace, and runs until it
+is told to end (``quit``) or its segment is gone. A request is a line of JSON, ``{"do": NAME, "args": [...]}``; the
+answer is ``{"ok": result}`` or ``{"error": text, "errno": n}``, with ``"notes": [...]`` for the user. It also removes
+user components whose process has died, and says so in its log.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from hal.client import LISTENER_FD
+from hal.process import own_identity
+from hal.realtime import Host
+from nml.errors import PyemcError
+from nml.namespace import shm_name
+
+SWEEP_SECONDS = 0.5  # host time between looks for dead components
+
+
+class Server:
+    """Requests in, answers out, one at a time."""
+
+    def __init__(self, listener: socket.socket) -> None:
+        self.listener = listener
+        self.host = Host()
+        self.running = True
+        self._lines: dict[socket.socket, bytes] = {}
+        self._requests: dict[str, Callable[..., Any]] = {
+            "loadrt": self.host.load,
+            "unloadrt": self.unload,
+            "loaded": self.host.loaded,
+            "addf": self.host.add_function,
+            "delf": self.host.remove_function,
+            "quit": self.quit,
+        }
+
+    def unload(self, name: str) -> None:
+        """One module; ``all``: every one, and the host ends."""
+        if name != "all":
+            self.host.unload(name)
+            return
+        self.host.hal.halt_threads()
+        for loaded in reversed(self.host.loaded()):
+            self.host.unload(loaded)
+        self.quit()
+
+    def quit(self) -> None:
+        self.running = False
+
+    def serve(self) -> None:
+        """Until told to end; threads go on by themselves meanwhile."""
+        segment = self.host.hal.segment
+        segment.host = own_identity()
+        segment.skip_ids(1)
+        try:
+            while self.running and os.path.exists("/dev/shm" + shm_name("hal")):
+                ready, _, _ = select.select([self.listener, *self._lines], [], [], SWEEP_SECONDS)
+                for source in ready:
+                    if source is self.listener:
+                        self._lines[source.accept()[0]] = b""
+                    else:
+                        self._receive(source)
+                for name in self.host.hal.reap():
+                    print(f"HAL: component '{name}' died without leaving; removed", file=sys.stderr, flush=True)
+        finally:
+            self.host.hal.halt_threads()
+            segment.host = (0, 0)
+            self.host.close()
+
+    def _receive(self, source: socket.socket) -> None:
+        try:
+            data = source.recv(65536)
+        except OSError:
+            data = b""
+        if not data:
+            del self._lines[source]
+            source.close()
+            return
+        *lines, self._lines[source] = (self._lines[source] + data).split(b"\n")
+        for line in lines:
+            answer = self._answer(line)
+            with contextlib.suppress(OSError):  # who asked may be gone
+                source.sendall(json.dumps(answer).encode() + b"\n")
+
+    def _answer(self, line: bytes) -> dict[str, Any]:
+        answer: dict[str, Any]
+        try:
+            request = json.loads(line)
+            answer = {"ok": self._requests[request["do"]](*request["args"])}
+        except PyemcError as error:
+            answer = {"error": str(error), "errno": getattr(error, "errno", -22)}
+        except Exception as error:  # a module's mistake is the user's to read, and no reason for the host to end
+            answer = {"error": f"{type(error).__name__}: {error}", "errno": -14}
+        answer["notes"], self.host.notes = self.host.notes, []
+        return answer
+
+
+def main() -> int:
+    """Serve on the inherited socket."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    listener = socket.socket(fileno=LISTENER_FD)
+    server = Server(listener)
+    signal.signal(signal.SIGTERM, lambda *_: server.quit())
+    try:
+        server.serve()
+    finally:
+        with contextlib.suppress(OSError):
+            os.unlink(listener.getsockname())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
