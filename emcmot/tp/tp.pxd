@@ -28,11 +28,7 @@ cdef enum:                   # bits of TpSegment.enables
     TP_AF_ENABLED = 4        # adaptive feed acts
     TP_FH_ENABLED = 8        # feed hold acts
 
-ctypedef struct TpIo:        # synchronised outputs that change when the segment starts
-    int64_t dout_mask        # bit n: dout n is set
-    int64_t dout_value
-    int64_t aout_mask
-    double aout_value[64]
+from emcmot.tp.outputs cimport TpIo      # synchronised outputs that change when a segment starts
 
 ctypedef struct TpSegment:
     int kind                 # TpKind
@@ -51,6 +47,8 @@ ctypedef struct TpSegment:
     double tolerance         # largest deviation from the programmed path
     double sync_revs         # lu per spindle revolution, 0: none
     int sync_velocity        # non-zero: only the velocity follows the spindle (G95), not its position
+    int wait_spindles        # bit mask: come to rest before this move and wait for these spindles to be at speed
+    int indexer              # come to rest before this move until the lock of this joint is open; -1: none
 
 ctypedef struct TpStatus:
     double pos[TP_AXES]      # commanded position now
@@ -69,8 +67,14 @@ ctypedef struct TpStatus:
     int done                 # queue empty and at rest
     int paused
     int reversing
+    int wants_unlock         # joint whose lock the next move waits for, -1: none
 
-ctypedef struct Tp           # opaque
+cdef extern from *:
+    """
+    typedef struct Tp Tp;
+    """
+    ctypedef struct Tp:      # opaque
+        pass
 
 cdef Tp* tp_create(int queue_size) noexcept nogil
 cdef void tp_free(Tp* tp) noexcept nogil
@@ -82,6 +86,9 @@ cdef void tp_set_feed_scale(Tp* tp, double scale) noexcept nogil             # 0
 cdef void tp_set_rapid_scale(Tp* tp, double scale) noexcept nogil
 cdef void tp_set_adaptive_scale(Tp* tp, double scale) noexcept nogil
 cdef void tp_set_feed_hold(Tp* tp, int hold) noexcept nogil
+cdef void tp_set_feed_inhibit(Tp* tp, int inhibit) noexcept nogil            # feed hold whatever the segment's enables say
+cdef void tp_set_at_speed(Tp* tp, int spindles) noexcept nogil               # bit mask of spindles at speed now
+cdef void tp_unlocked(Tp* tp, int yes) noexcept nogil                        # the lock that wants_unlock names is open
 cdef void tp_set_vel_limit(Tp* tp, double vel) noexcept nogil                # MAX_LINEAR_VELOCITY cap of the tool tip
 cdef void tp_pause(Tp* tp) noexcept nogil                                    # ramp to rest on the path and hold
 cdef void tp_resume(Tp* tp) noexcept nogil

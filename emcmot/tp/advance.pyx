@@ -1,0 +1,228 @@
+"""Motion along the planned path, one servo period at a time.
+
+A period is cut into phases of constant d2u/dt2. On lines, where the limits do not change with u, a phase ends where the
+feed, or the way that braking takes, is reached. On curved spans the acceleration is the largest that the axes can hold to the
+end of the span and that arrives there with no more than the span's exit limit; where an override, a hold or an abort
+asks for less speed, it is the smallest. Both keep the state in the set from which every later limit can be kept.
+"""
+
+from libc.math cimport fabs, fmax, fmin, sqrt
+from libc.stdint cimport int64_t
+
+from emcmot.tp.corner cimport blend_position
+from emcmot.tp.geometry cimport position
+from emcmot.tp.limits cimport acceleration_range, hardest_stop
+from emcmot.tp.model cimport AXES, SPAN_BLEND, SPAN_LINE, Segment, Span, TpState
+from emcmot.tp.path cimport exit_limit, extend, feed_cap, refresh, sweep_caps
+from emcmot.tp.tp cimport TP_FH_ENABLED
+
+cdef enum:
+    PHASES_PER_PERIOD = 20000    # bound of the work of one period
+    SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
+    REFRESH_SHARE = 16           # longer ones: when this share of the path is new
+
+cdef double NO_WAY = 1e-13       # u
+cdef double SAME_SPEED = 1e-12   # relative
+
+ctypedef struct Phase:
+    double acceleration      # d2u/dt2
+    double way               # u for which it holds
+
+
+cdef inline Span* _span(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.spans[index & tp.span_mask]
+
+
+cdef inline Segment* _seg(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.segs[index & tp.seg_mask]
+
+
+cdef int64_t current_segment(const TpState* tp) noexcept nogil:
+    """Index of the executing segment; seg_tail when there is none. A blend is half the one, half the other."""
+    cdef const Span* span
+    if tp.active >= tp.span_tail:
+        return tp.seg_built
+    span = _span(tp, tp.active)
+    return span.seg - (span.kind == SPAN_BLEND and span.u0 + tp.u < span.trim)
+
+
+cdef int _holding(const TpState* tp) noexcept nogil:
+    if tp.paused or tp.aborting or tp.feed_inhibit:
+        return 1
+    return tp.feed_hold and _seg(tp, current_segment(tp)).enables & TP_FH_ENABLED
+
+
+cdef void advance(TpState* tp) noexcept nogil:
+    """One servo period: build and look ahead as far as needed, move by dt, publish position and velocity."""
+    cdef double before[AXES]
+    cdef int i
+    for i in range(AXES):
+        before[i] = tp.pos[i]
+    extend(tp)
+    sweep_caps(tp)
+    if tp.active < tp.span_tail:
+        _move(tp, tp.dt)
+        _publish(tp)
+    if tp.aborting and tp.w == 0.0:
+        _drop_queue(tp)
+    for i in range(AXES):
+        tp.vel[i] = (tp.pos[i] - before[i]) / tp.dt
+
+
+cdef void _drop_queue(TpState* tp) noexcept nogil:
+    cdef int i
+    tp.seg_head = tp.seg_built = tp.seg_tail
+    tp.active = tp.settled = tp.new_spans = tp.span_tail
+    tp.corner_known = 0
+    tp.body_end = tp.body_goal = 0.0
+    tp.aborting = tp.paused = tp.stepping = 0
+    tp.u = tp.w = 0.0
+    for i in range(AXES):
+        tp.goal[i] = tp.pos[i]
+
+
+cdef void _publish(TpState* tp) noexcept nogil:
+    cdef const Span* span
+    if tp.active >= tp.span_tail:
+        position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.pos)
+        return
+    span = _span(tp, tp.active)
+    if span.kind == SPAN_BLEND:
+        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, span.u0 + tp.u, tp.pos)
+    else:
+        position(_seg(tp, span.seg), span.u0 + tp.u, tp.pos)
+
+
+cdef void _look_ahead(TpState* tp) noexcept nogil:
+    """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it."""
+    cdef int64_t fresh = tp.span_tail - tp.new_spans, known = tp.span_tail - tp.active
+    if fresh > 0 and tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known):
+        refresh(tp)
+
+
+cdef void _move(TpState* tp, double left) noexcept nogil:
+    """Move along the path for `left` seconds."""
+    cdef Span* span
+    cdef Phase phase
+    cdef double v, end_v, end_w, time
+    cdef int count
+    for count in range(PHASES_PER_PERIOD):
+        if tp.w == 0.0 and _waiting(tp):
+            return
+        span = _span(tp, tp.active)
+        if tp.u >= span.h - NO_WAY:
+            if not _next_span(tp, span):
+                return
+            continue
+        _look_ahead(tp)
+        phase = _line_phase(tp, span) if span.kind == SPAN_LINE else _curve_phase(tp, span)
+        if tp.w == 0.0 and phase.acceleration <= 0.0:
+            return
+        end_w = fmax(0.0, tp.w + 2.0 * phase.acceleration * phase.way)
+        v = sqrt(tp.w)
+        time = 2.0 * phase.way / (v + sqrt(end_w))
+        if time <= left:
+            left -= time
+            tp.u += phase.way
+            tp.w = end_w
+            continue
+        end_v = v + phase.acceleration * left
+        if end_v > 0.0:
+            tp.u += 0.5 * (v + end_v) * left
+            tp.w = end_v * end_v
+        else:
+            tp.u += 0.5 * tp.w / fabs(phase.acceleration)
+            tp.w = 0.0
+        return
+
+
+cdef int _waiting(TpState* tp) noexcept nogil:
+    """Whether the current segment may not start yet; once started it is not asked again."""
+    cdef int64_t index = current_segment(tp)
+    cdef const Segment* seg = _seg(tp, index)
+    if index < tp.started:
+        return 0
+    if seg.wait_spindles & ~tp.at_speed or (seg.indexer >= 0 and not tp.unlocked):
+        return 1
+    tp.started = index + 1
+    return 0
+
+
+cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
+    """Go on to the next span; 0 where the path ends."""
+    cdef const Span* following
+    tp.w = 0.0 if span.stop else tp.w * span.ratio * span.ratio
+    if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.seg_built < tp.seg_tail):
+        tp.w = 0.0                                   # at the end of what is built so far, but not of the queue
+        return 0
+    tp.active += 1
+    tp.u = 0.0
+    if tp.active >= tp.span_tail:
+        tp.w = 0.0
+        tp.seg_head = tp.seg_built
+        return 0
+    following = _span(tp, tp.active)
+    tp.seg_head = following.seg - (following.kind == SPAN_BLEND)
+    if tp.stepping and _seg(tp, current_segment(tp)).id != tp.step_id:
+        tp.stepping = 0
+        tp.paused = 1
+    return 1
+
+
+cdef Phase _line_phase(const TpState* tp, const Span* span) noexcept nogil:
+    """Accelerate to the feed, hold it, brake for what follows: whichever is due now."""
+    cdef Phase phase
+    cdef double x = span.h - tp.u, a = span.acc
+    cdef double limit = exit_limit(tp, tp.active)
+    cdef double braking = limit + 2.0 * a * x        # w from which full braking arrives at the limit
+    cdef double target = 0.0 if _holding(tp) else feed_cap(tp, tp.active)
+    if tp.w > target * (1.0 + SAME_SPEED):
+        phase.acceleration = -a
+        phase.way = fmin(x, (tp.w - target) / (2.0 * a))
+    elif tp.w >= braking * (1.0 - SAME_SPEED):
+        phase.acceleration = fmin(0.0, (limit - tp.w) / (2.0 * x))
+        phase.way = x
+    elif tp.w < target * (1.0 - SAME_SPEED):
+        phase.acceleration = a
+        phase.way = fmin(x, fmin((target - tp.w) / (2.0 * a), (braking - tp.w) / (4.0 * a)))
+    else:
+        phase.acceleration = 0.0
+        phase.way = fmin(x, (braking - tp.w) / (2.0 * a))
+    return phase
+
+
+cdef Phase _curve_phase(const TpState* tp, const Span* span) noexcept nogil:
+    """The largest acceleration to the end of the span; the smallest where the speed is to fall."""
+    cdef Phase phase
+    cdef double x = span.h - tp.u
+    cdef double limit = exit_limit(tp, tp.active)
+    cdef double low, high, target, room
+    acceleration_range(span, tp.amax, tp.u, tp.w, &low, &high)
+    phase.way = x
+    if _holding(tp):
+        phase.acceleration = hardest_stop(span, tp.amax, tp.u, tp.w)
+        if tp.w + 2.0 * x * phase.acceleration <= 0.0:
+            phase.way = -0.5 * tp.w / phase.acceleration if tp.w > 0.0 else x
+        else:
+            phase.acceleration = fmax(low, -0.5 * tp.w / x)
+        return phase
+    target = feed_cap(tp, tp.active)
+    phase.acceleration = fmax(low, fmin(high, (fmin(limit, target) - tp.w) / (2.0 * x)))
+    if limit < target:
+        room = _even_acceleration(tp, span, x, limit)
+        if tp.w + limit < 0.25 * room * x and tp.w < 0.99 * target:
+            phase.acceleration = room
+            phase.way = fmin(limit - tp.w + 2.0 * room * x, 2.0 * (target - tp.w)) / (4.0 * room)
+    return phase
+
+
+cdef double _even_acceleration(const TpState* tp, const Span* span, double x, double limit) noexcept nogil:
+    """An acceleration that may be held, either way, anywhere on the rest x of the span, up to the speeds it leads to."""
+    cdef double a = span.acc, dq, ddq, most
+    cdef int j
+    for j in range(span.n):
+        dq = fmax(fabs(span.dq0[j]), fabs(span.dq1[j]))
+        ddq = fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j]))
+        most = tp.amax[span.axis[j]] * span.tight - ddq * limit
+        a = fmin(a, fmax(0.0, most) / (dq + 2.0 * x * ddq))
+    return a

@@ -1,0 +1,132 @@
+"""The planner's own data: segments as programmed, spans as planned, and the state of one planner.
+
+A *segment* is one programmed move.  Its parameter u runs from 0 to `length`, one unit of u being one unit of feed
+distance (xyz length, else uvw length, else degrees), so du/dt is the feed.  The *planned path* is a chain of spans: a
+span is a stretch of a straight move, of an arc, or of the blend that replaces the corner between two segments.  Speed
+is planned in w = (du/dt)^2; inside a span w is piecewise linear in u, that is, d2u/dt2 is piecewise constant.
+
+Segments and spans live in rings; an index counts up for ever and `index & mask` is its place.
+Shared by geometry, limits, build, advance and tp; nothing outside this folder sees it.
+"""
+
+from libc.stdint cimport int64_t
+
+from emcmot.tp.outputs cimport TpIo
+
+cdef enum:
+    AXES = 9
+
+cdef enum FeedUnit:          # which axes the length of a segment is measured along
+    UNIT_XYZ = 0
+    UNIT_ABC = 1
+    UNIT_UVW = 2
+
+cdef enum SpanKind:
+    SPAN_LINE = 1            # part of a straight move: constant limits, w free within them
+    SPAN_ARC = 2             # part of an arc, short enough for linear interpolation of its derivatives
+    SPAN_BLEND = 3           # part of the corner between segment `seg - 1` and segment `seg`
+
+ctypedef struct Segment:
+    int kind                 # TpKind
+    int motion_type
+    int term
+    int enables
+    int unit                 # FeedUnit
+    int spindle
+    int sync_velocity
+    int wait_spindles        # bit mask; the segment starts when these spindles are at speed
+    int indexer              # joint whose lock must be open for this move, or -1
+    int has_io
+    int64_t id
+    double length            # of the parameter u
+    double start[AXES]
+    double end[AXES]
+    double rate[AXES]        # dq/du of the part that is linear in u (arcs: helix and the axes off the plane)
+    double center[3]
+    double e1[3]             # unit vectors of the arc's plane; e1 points from the center to the start
+    double e2[3]
+    double radius            # at the start
+    double growth            # d(radius)/du, spirals
+    double omega             # d(angle)/du
+    double trim_start        # u taken by the blend before, and by the blend after
+    double trim_end
+    int exit_stop            # its end can only be passed at rest
+    double exit_ratio        # du of the next segment per du of this one, where they meet
+    double vel
+    double vel_max
+    double acc
+    double tolerance
+    double sync_revs
+
+ctypedef struct Span:
+    int kind                 # SpanKind
+    int stop                 # non-zero: the end must be reached at rest
+    int n                    # axes that move here
+    int axis[AXES]
+    int64_t seg              # segment that it is part of; a blend belongs to the later one
+    double u0                # parameter at the start, of the segment or of the blend
+    double h                 # length in u
+    double trim              # blends: u of the earlier segment that the blend takes; the blend's u runs to 2 trim
+    double ratio             # du of the next span per du of this one, where they join
+    double cap               # hard limit of w here: axis velocities, vel_max
+    double speed             # largest |dq/du| in feed units: the feed cap is w <= (feed / speed)^2
+    double speed_before      # blends: the same for the feed of the earlier segment
+    double acc               # lines: limit of |d2u/dt2|; else the limit that the segment asks for, or infinity
+    double tight             # share of the axis accelerations that interpolation leaves
+    double beta              # largest w at the start from which every later limit can be kept
+    double dq0[AXES]         # derivatives by u at both ends, for the n axes of `axis`; not for lines
+    double dq1[AXES]
+    double ddq0[AXES]
+    double ddq1[AXES]
+
+ctypedef struct TpState:
+    double dt                # servo period, s
+    double vmax[AXES]
+    double amax[AXES]
+    double jmax[AXES]
+    double pos[AXES]         # commanded now
+    double vel[AXES]
+    double goal[AXES]        # end of the last segment added
+
+    Segment* segs
+    TpIo* ios
+    int seg_mask
+    int capacity             # segments that tp_add accepts
+    int64_t seg_head         # oldest segment still needed
+    int64_t seg_tail         # one past the newest
+    int64_t seg_built        # one past the last segment that spans exist of
+
+    Span* spans
+    int span_mask
+    int64_t active           # span being executed
+    int64_t span_tail
+    double body_end          # u of segment `seg_built - 1` up to which its spans reach
+    double body_goal         # u up to which they shall reach
+    int corner_known         # the corner at the end of that segment is decided
+    int64_t settled          # spans before this one have their final beta
+    int64_t new_spans        # first span added or changed since the last backward pass
+    int64_t sweep            # cursor of the recomputation after a change of feed caps
+    int caps_changed
+
+    double u                 # parameter within the active span, 0..h
+    double w                 # (du/dt)^2
+
+    double feed_scale
+    double rapid_scale
+    double adaptive_scale
+    double vel_limit
+    int feed_hold
+    int feed_inhibit
+    int at_speed             # bit mask of spindles
+    int unlocked             # the indexer that is waited for
+    int64_t started          # segments before this one have passed their start conditions
+    int paused
+    int stepping
+    int aborting
+    int64_t step_id
+    int64_t io_taken         # outputs of the segments before this one have been handed out
+
+    double spindle_revs[8]
+    double spindle_rps[8]
+    double sync_origin
+    int64_t sync_seg

@@ -1,0 +1,12 @@
+"""The planned path: spans of the queued segments, and the largest speed at the start of each."""
+
+from libc.stdint cimport int64_t
+
+from emcmot.tp.model cimport Segment, TpState
+
+cdef void extend(TpState* tp) noexcept nogil
+cdef void refresh(TpState* tp) noexcept nogil
+cdef void sweep_caps(TpState* tp) noexcept nogil
+cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil
+cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil
+cdef double feed_scale(const TpState* tp, const Segment* seg) noexcept nogil

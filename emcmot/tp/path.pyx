@@ -1,0 +1,349 @@
+"""The planned path: makes spans of queued segments, and keeps the largest safe speed at the start of each span.
+
+`extend` builds a bounded number of segments per servo period, so adding a segment to the queue costs only a copy.
+`refresh` is the look-ahead: going back from the end of the built path, where the machine must be able to stop, it finds
+for each span the largest w (`beta`) from which all that follows can be kept. A span whose answer does not depend on what
+follows (`settled`) shields those before it, so each span is visited about twice, however far the machine looks ahead.
+"""
+
+from libc.math cimport INFINITY, ceil, fabs, fmax, fmin
+from libc.stdint cimport int64_t
+
+from emcmot.tp.corner cimport Corner, blend_derivatives, blend_spans, decide_corner
+from emcmot.tp.geometry cimport derivatives, norm
+from emcmot.tp.limits cimport acceleration_range, entry_limit
+from emcmot.tp.model cimport AXES, SPAN_ARC, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FH_ENABLED, TP_FS_ENABLED
+
+cdef enum:
+    SEGMENTS_PER_PERIOD = 32
+    SPANS_PER_STEP = 64          # spans that one step of building may add
+    SPANS_PER_SWEEP = 512        # spans per period that a change of feed caps recomputes
+    MOTION_TRAVERSE = 1
+
+cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
+cdef double ARC_SPAN_ANGLE = 0.04
+
+
+cdef inline Span* _span(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.spans[index & tp.span_mask]
+
+
+cdef inline Segment* _seg(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.segs[index & tp.seg_mask]
+
+
+# --- caps -------------------------------------------------------------------------------------------------------------
+
+cdef double feed_scale(const TpState* tp, const Segment* seg) noexcept nogil:
+    """Share of the programmed speed that overrides leave, holds aside."""
+    cdef double scale = 1.0
+    if seg.enables & TP_FS_ENABLED:
+        scale = tp.rapid_scale if seg.motion_type == MOTION_TRAVERSE else tp.feed_scale
+    if seg.enables & TP_AF_ENABLED and seg.motion_type != MOTION_TRAVERSE:
+        scale *= fabs(tp.adaptive_scale)
+    return scale
+
+
+cdef double _feed(const TpState* tp, const Segment* seg) noexcept nogil:
+    cdef double feed = fmin(seg.vel * feed_scale(tp, seg), seg.vel_max)
+    return fmin(feed, tp.vel_limit) if seg.unit == UNIT_XYZ and tp.vel_limit > 0.0 else feed
+
+
+cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil:
+    """Largest w of a span under its hard limits and the feed as overridden now."""
+    cdef const Span* span = _span(tp, index)
+    cdef double v = _feed(tp, _seg(tp, span.seg)) / span.speed
+    if span.kind == SPAN_BLEND:
+        v = fmin(v, _feed(tp, _seg(tp, span.seg - 1)) / span.speed_before)
+    return fmin(v * v, span.cap)
+
+
+# --- look-ahead -------------------------------------------------------------------------------------------------------
+
+cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil:
+    """Largest w at the end of a span, in its own u, from which what follows can be kept."""
+    cdef const Span* span = _span(tp, index)
+    if span.stop or index + 1 >= tp.span_tail:
+        return 0.0
+    return _span(tp, index + 1).beta / (span.ratio * span.ratio)
+
+
+cdef void refresh(TpState* tp) noexcept nogil:
+    """Recompute beta from the end of the path back to where nothing changes."""
+    cdef int64_t index = tp.span_tail - 1
+    cdef int64_t settled = -1
+    cdef int shielded
+    cdef double beta
+    cdef Span* span
+    while index > tp.active:
+        span = _span(tp, index)
+        beta = entry_limit(span, tp.amax, feed_cap(tp, index), exit_limit(tp, index), &shielded)
+        if index < tp.new_spans and beta == span.beta:
+            break
+        span.beta = beta
+        if shielded and settled < 0:
+            settled = index
+        index -= 1
+    if settled >= 0:
+        tp.settled = settled + 1
+    elif index > tp.settled:
+        tp.settled = index
+    tp.new_spans = tp.span_tail
+
+
+cdef void sweep_caps(TpState* tp) noexcept nogil:
+    """After a change of feed caps: recompute beta of all spans, a bounded number of them per period."""
+    cdef int64_t stop
+    cdef int shielded
+    cdef Span* span
+    if tp.sweep <= tp.active:
+        if not tp.caps_changed:
+            return
+        tp.caps_changed = 0
+        tp.sweep = tp.span_tail - 1
+    tp.sweep = min(tp.sweep, tp.span_tail - 1)
+    stop = max(tp.active, tp.sweep - SPANS_PER_SWEEP)
+    while tp.sweep > stop:
+        span = _span(tp, tp.sweep)
+        span.beta = entry_limit(span, tp.amax, feed_cap(tp, tp.sweep), exit_limit(tp, tp.sweep), &shielded)
+        tp.sweep -= 1
+
+
+# --- building ---------------------------------------------------------------------------------------------------------
+
+cdef void extend(TpState* tp) noexcept nogil:
+    """Build spans of queued segments, as far as the ring of spans and this period's share of work allow."""
+    cdef int steps = 0
+    cdef int64_t last
+    while steps < SEGMENTS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP < tp.span_mask:
+        last = tp.seg_built - 1
+        steps += 1
+        if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
+            _plan_corner(tp, last)
+        elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY:
+            _add_body(tp, last)
+        elif tp.seg_built < tp.seg_tail:
+            _start_segment(tp, tp.seg_built)
+        else:
+            break
+
+
+cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
+    """Decide the corner at the end of segment `last`, and how far its own spans reach."""
+    cdef Segment* a = _seg(tp, last)
+    cdef Segment* b = _seg(tp, last + 1)
+    cdef Corner corner
+    if tp.body_end >= a.length - NO_WAY:
+        _reopen(tp, last)
+        return
+    corner = decide_corner(tp, a, b, a.length - fmax(tp.body_end, a.trim_start))
+    _set_corner(tp, last, corner)
+
+
+cdef void _set_corner(TpState* tp, int64_t last, Corner corner) noexcept nogil:
+    cdef Segment* a = _seg(tp, last)
+    cdef Segment* b = _seg(tp, last + 1)
+    a.trim_end = corner.trim
+    a.exit_stop = corner.stop
+    a.exit_ratio = corner.ratio
+    b.trim_start = corner.ratio * corner.trim
+    tp.body_goal = a.length - corner.trim
+    tp.corner_known = 1
+
+
+cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
+    """The path was built to the end of `last`, and now goes on: put a blend there if the machine can still take it."""
+    cdef Segment* a = _seg(tp, last)
+    cdef Segment* b = _seg(tp, last + 1)
+    cdef Corner corner
+    cdef double room = a.length - a.trim_start
+    cdef const Span* span
+    if tp.active < tp.span_tail:
+        span = _span(tp, tp.active)
+        if span.seg == last and span.kind != SPAN_BLEND:
+            room = fmax(0.0, a.length - span.u0 - tp.u)
+    else:
+        room = 0.0
+    corner = decide_corner(tp, a, b, 0.99 * room)
+    _set_corner(tp, last, corner)
+    if corner.trim == 0.0:
+        tp.new_spans = min(tp.new_spans, tp.span_tail - 1)
+        return
+    _cut_body(tp, last, tp.body_goal)
+    _start_segment(tp, last + 1)
+    if tp.body_end < tp.body_goal - NO_WAY:
+        _add_body(tp, last + 1)
+    refresh(tp)
+    if _active_fits(tp):
+        return
+    while tp.span_tail > tp.active + 1 and _span(tp, tp.span_tail - 1).seg == last + 1:
+        tp.span_tail -= 1
+    corner.trim = 0.0
+    corner.stop = 1
+    _set_corner(tp, last, corner)
+    tp.seg_built = last + 1
+    span = _span(tp, tp.span_tail - 1)
+    tp.body_end = a.trim_start if span.kind == SPAN_BLEND else span.u0 + span.h
+    while tp.body_end < tp.body_goal - NO_WAY:
+        _add_body(tp, last)
+    refresh(tp)
+
+
+cdef void _cut_body(TpState* tp, int64_t last, double end) noexcept nogil:
+    """Let the spans of segment `last` end at u = `end`."""
+    cdef Span* span = _span(tp, tp.span_tail - 1)
+    while tp.span_tail - 1 > tp.active and span.seg == last and span.kind != SPAN_BLEND and span.u0 >= end - NO_WAY:
+        tp.span_tail -= 1
+        span = _span(tp, tp.span_tail - 1)
+    if span.seg == last and span.kind != SPAN_BLEND:
+        span.h = end - span.u0
+        _limit_body(tp, _seg(tp, last), span)
+    tp.body_end = end
+    tp.new_spans = min(tp.new_spans, tp.span_tail - 1)
+
+
+cdef int _active_fits(const TpState* tp) noexcept nogil:
+    """Whether the present speed can still keep all limits ahead."""
+    cdef const Span* span = _span(tp, tp.active)
+    cdef double x = span.h - tp.u, limit = exit_limit(tp, tp.active), low, high
+    if span.kind == SPAN_LINE:
+        return tp.w <= (limit + 2.0 * span.acc * x) * (1.0 + 1e-9)
+    acceleration_range(span, tp.amax, tp.u, tp.w, &low, &high)
+    return tp.w + 2.0 * x * low <= limit * (1.0 + 1e-9)
+
+
+cdef void _start_segment(TpState* tp, int64_t index) noexcept nogil:
+    """Join segment `index` to the end of the path: the blend before it, or the tangent joint, or the stop."""
+    cdef Segment* b = _seg(tp, index)
+    cdef Segment* a = _seg(tp, index - 1)
+    if index > tp.seg_head and a.trim_end > 0.0:
+        _add_blend(tp, index)
+    elif tp.span_tail > tp.active:
+        _span(tp, tp.span_tail - 1).stop = a.exit_stop
+        _span(tp, tp.span_tail - 1).ratio = a.exit_ratio
+    tp.seg_built = index + 1
+    tp.body_end = b.trim_start
+    tp.body_goal = b.length
+    tp.corner_known = 0
+
+
+cdef Span* _new_span(TpState* tp, int kind, int64_t seg, double u0, double h) noexcept nogil:
+    cdef Span* span = _span(tp, tp.span_tail)
+    tp.span_tail += 1
+    span.kind = kind
+    span.stop = 0
+    span.n = 0
+    span.seg = seg
+    span.u0 = u0
+    span.h = h
+    span.trim = 0.0
+    span.ratio = 1.0
+    span.acc = INFINITY
+    span.tight = 1.0
+    span.beta = 0.0
+    return span
+
+
+cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
+    """Spans of the segment itself, from body_end on; long arcs come in several steps."""
+    cdef Segment* seg = _seg(tp, index)
+    cdef double way = tp.body_goal - tp.body_end, h = way
+    cdef int count, k
+    if seg.kind == TP_ARC:
+        h = fmin(ARC_SPAN_ANGLE / fabs(seg.omega), fmax(4.0 * tp.dt * seg.vel_max, _braking_way(tp, seg)))
+    count = <int>fmin(ceil(way / h), SPANS_PER_STEP)
+    h = way / fmax(ceil(way / h), 1.0)
+    for k in range(count):
+        _limit_body(
+            tp, seg, _new_span(tp, SPAN_ARC if seg.kind == TP_ARC else SPAN_LINE, index, tp.body_end + k * h, h)
+        )
+    tp.body_end += count * h
+
+
+cdef double _braking_way(const TpState* tp, const Segment* seg) noexcept nogil:
+    """A fifth of the way that stopping takes: spans of this length lose next to nothing of the acceleration."""
+    return 0.1 * seg.vel_max * seg.vel_max / fmax(tp.amax[0], fmax(tp.amax[1], tp.amax[2]))
+
+
+cdef void _limit_body(TpState* tp, const Segment* seg, Span* span) noexcept nogil:
+    """Limits of a span of a line or an arc."""
+    cdef double dq0[AXES]
+    cdef double dq1[AXES]
+    cdef double ddq0[AXES]
+    cdef double ddq1[AXES]
+    cdef double angle
+    cdef int i
+    if seg.acc > 0.0:
+        span.acc = seg.acc
+    derivatives(seg, span.u0, dq0, ddq0)
+    if span.kind == SPAN_LINE:
+        for i in range(AXES):
+            if dq0[i] != 0.0:
+                span.acc = fmin(span.acc, tp.amax[i] / fabs(dq0[i]))
+        _limit_speed(tp, span, dq0, dq0, seg.vel_max, seg.unit)
+        return
+    angle = fabs(seg.omega) * span.h
+    span.tight = 1.0 - 0.75 * angle * angle
+    derivatives(seg, span.u0 + span.h, dq1, ddq1)
+    _limit_speed(tp, span, dq0, dq1, seg.vel_max, seg.unit)
+    _keep_derivatives(span, dq0, dq1, ddq0, ddq1)
+
+
+cdef void _keep_derivatives(
+    Span* span, const double* dq0, const double* dq1, const double* ddq0, const double* ddq1) noexcept nogil:
+    """Store the derivatives of the axes that move."""
+    cdef int i
+    span.n = 0
+    for i in range(AXES):
+        if dq0[i] != 0.0 or dq1[i] != 0.0 or ddq0[i] != 0.0 or ddq1[i] != 0.0:
+            span.axis[span.n] = i
+            span.dq0[span.n] = dq0[i]
+            span.dq1[span.n] = dq1[i]
+            span.ddq0[span.n] = ddq0[i]
+            span.ddq1[span.n] = ddq1[i]
+            span.n += 1
+
+
+cdef void _limit_speed(
+    const TpState* tp, Span* span, const double* dq0, const double* dq1, double vel_max, int unit) noexcept nogil:
+    """Hard cap of w, and what the feed is measured by."""
+    cdef double rate, v
+    cdef int i
+    span.speed = span.speed_before = fmax(norm(dq0, unit), norm(dq1, unit))
+    v = vel_max / span.speed
+    for i in range(AXES):
+        rate = fmax(fabs(dq0[i]), fabs(dq1[i]))
+        if rate > 0.0:
+            v = fmin(v, tp.vmax[i] * span.tight / rate)
+    span.cap = v * v
+
+
+cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
+    """Spans of the corner between segments `index - 1` and `index`."""
+    cdef Segment* a = _seg(tp, index - 1)
+    cdef Segment* b = _seg(tp, index)
+    cdef Corner corner
+    cdef Span* span = NULL
+    cdef double dq[2][AXES]
+    cdef double ddq[2][AXES]
+    cdef double h
+    cdef int count, k, now, then
+    corner.stop = 0
+    corner.trim = a.trim_end
+    corner.ratio = a.exit_ratio
+    count = blend_spans(a, b, &corner)
+    h = 2.0 * corner.trim / count
+    blend_derivatives(a, b, &corner, 0.0, dq[0], ddq[0])
+    for k in range(count):
+        now, then = k & 1, 1 - (k & 1)
+        span = _new_span(tp, SPAN_BLEND, index, k * h, h)
+        blend_derivatives(a, b, &corner, (k + 1) * h, dq[then], ddq[then])
+        span.trim = corner.trim
+        if a.kind == TP_ARC or b.kind == TP_ARC:
+            span.tight = 0.985
+        _limit_speed(tp, span, dq[now], dq[then], b.vel_max, b.unit)
+        span.speed_before = fmax(norm(dq[now], a.unit), norm(dq[then], a.unit))
+        span.cap = fmin(span.cap, (a.vel_max / span.speed_before) ** 2)
+        _keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
+    span.ratio = corner.ratio
