@@ -6,6 +6,7 @@
     │   ├── EncodeError      our side made a message that cannot be written (also a ValueError)
     │   ├── DecodeError      the other side wrote something that is no message (also a ValueError)
     │   ├── BufferError_     a buffer that is missing, too small, or not the one that was asked for
+    │   │   └── QueueFull    no room until somebody reads
     │   └── ChannelTimeout   nobody answered within the buffer's timeout (also a TimeoutError)
     ├── HalError             a refusal of the hardware abstraction layer; carries the original's errno
     └── InterpError          a G-code program is wrong: file, line, column, block
@@ -60,6 +61,10 @@ class DecodeError(NmlError, ValueError):
 
 class BufferError_(NmlError):
     """A buffer is missing, of another size or kind than asked for, or not allowed to this process."""
+
+
+class QueueFull(BufferError_):
+    """A queue has no room for the message until somebody reads; nothing was written."""
 
 
 class ChannelTimeout(NmlError, TimeoutError):

@@ -324,6 +324,7 @@ class EMCMOT_STATUS(Status, type_id=3002):
     current_vel = double(unit="lu/s")
     requested_vel = double(unit="lu/s")
     distance_to_go = double(unit="lu")
+    distance_travelled = double(unit="lu", doc="way of the commanded tool position (x y z) since start, never reset")
     servo_period = double(unit="s")
     servo_time = double(unit="s", doc="motion-controller: run time of the last period")
     servo_time_max = double(unit="s")

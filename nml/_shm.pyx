@@ -1,0 +1,676 @@
+"""Buffers in shared memory: one message (the newest), a queue, or a queue in which every reader has its own cursor.
+
+A segment is ``Head``, one ``Diag`` per possible process, then the data. What a reader may see is decided by single
+atomic words that are stored last; until then a write or a read has not happened, so a process may be killed anywhere.
+
+* Single slot: message *n* lies in slot *n* mod 4, and the slot's ``id`` is 0 while it is being written. A reader copies
+  and looks at the id again; it never holds up the writer, and nobody waits for it.
+* Queue: a ring of records. A write copies the record, then its end (``tail``), then the write counter, which commits it;
+  a read does the same with ``head`` and the read counter. ``tail`` and ``head`` exist twice, for even and odd counters,
+  so that the value that belongs to the committed counter is always intact.
+* Broadcast queue: the writer drops the oldest records; a reader that was too slow learns how many it missed.
+
+Writers among themselves, and readers of a queue among themselves, take a robust mutex; when its owner was killed the
+next one gets it and finds everything as it was committed. A native thread that is the only writer (or reader) uses the
+C functions and no lock.
+"""
+
+from cpython.bytearray cimport PyByteArray_AS_STRING, PyByteArray_GET_SIZE
+from cpython.exc cimport PyErr_CheckSignals
+from libc.errno cimport EBUSY, ETIMEDOUT
+from libc.string cimport memcpy, memset, strerror, strncpy
+from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
+from posix.unistd cimport getpid
+
+from nml.errors import BufferError_, ChannelTimeout, EncodeError, QueueFull
+
+cdef extern from * nogil:
+    """
+    #include <errno.h>
+    #include <pthread.h>
+    #include <time.h>
+    #include <unistd.h>
+    #include <limits.h>
+    #include <sys/syscall.h>
+    #include <linux/futex.h>
+
+    #define nml_load(p) __atomic_load_n((p), __ATOMIC_ACQUIRE)
+    #define nml_store(p, v) __atomic_store_n((p), (v), __ATOMIC_RELEASE)
+    #define nml_fence() __atomic_thread_fence(__ATOMIC_SEQ_CST)
+
+    static void nml_store_max(uint64_t *p, uint64_t v) {
+        uint64_t old = __atomic_load_n(p, __ATOMIC_RELAXED);
+        while (old < v && !__atomic_compare_exchange_n(p, &old, v, 0, __ATOMIC_RELEASE, __ATOMIC_RELAXED)) {}
+    }
+    static void nml_wake(uint32_t *word, uint32_t *waiters) {
+        __atomic_add_fetch(word, 1, __ATOMIC_SEQ_CST);
+        if (__atomic_exchange_n(waiters, 0, __ATOMIC_SEQ_CST))
+            syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
+    }
+    static int nml_sleep(uint32_t *word, uint32_t *waiters, uint32_t expected, long ns) {
+        struct timespec t = {ns / 1000000000L, ns % 1000000000L};
+        __atomic_store_n(waiters, 1, __ATOMIC_SEQ_CST);
+        if (__atomic_load_n(word, __ATOMIC_SEQ_CST) != expected) return 0;
+        return syscall(SYS_futex, word, FUTEX_WAIT, expected, &t, NULL, 0);
+    }
+    static int nml_mutex_init(pthread_mutex_t *m) {
+        pthread_mutexattr_t a;
+        pthread_mutexattr_init(&a);
+        pthread_mutexattr_setpshared(&a, PTHREAD_PROCESS_SHARED);
+        pthread_mutexattr_setrobust(&a, PTHREAD_MUTEX_ROBUST);
+        int failed = pthread_mutex_init(m, &a);
+        pthread_mutexattr_destroy(&a);
+        return failed;
+    }
+    static int nml_lock_until(pthread_mutex_t *m, double seconds) {
+        if (seconds < 0) return pthread_mutex_lock(m);
+        struct timespec t;
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        long ns = t.tv_nsec + (long)((seconds - (long)seconds) * 1e9);
+        t.tv_sec += (long)seconds + ns / 1000000000L;
+        t.tv_nsec = ns % 1000000000L;
+        return pthread_mutex_clocklock(m, CLOCK_MONOTONIC, &t);
+    }
+    """
+    uint64_t nml_load(uint64_t* p)
+    uint32_t nml_load32 "nml_load"(uint32_t* p)
+    void nml_store(uint64_t* p, uint64_t v)
+    void nml_fence()
+    void nml_store_max(uint64_t* p, uint64_t v)
+    void nml_wake(uint32_t* word, uint32_t* waiters)
+    int nml_sleep(uint32_t* word, uint32_t* waiters, uint32_t expected, long ns)
+    int nml_mutex_init(pthread_mutex_t* m)
+    int nml_lock_until(pthread_mutex_t* m, double seconds)
+    int pthread_mutex_trylock(pthread_mutex_t* m)
+    int pthread_mutex_unlock(pthread_mutex_t* m)
+    int pthread_mutex_consistent(pthread_mutex_t* m)
+    int EOWNERDEAD
+
+LAYOUT_VERSION = 0x4C4D4E_0001
+cdef uint64_t VERSION = LAYOUT_VERSION
+cdef enum:
+    ALIGNMENT = 64
+    RECORD_STEP = 32
+    SERIAL_AT = 16
+    SERIAL_END = 20
+    LONGEST_SLEEP_NS = 100_000_000
+
+SLOT, QUEUE, BROADCAST = KIND_SLOT, KIND_QUEUE, KIND_BROADCAST
+
+
+cdef inline uint64_t aligned(uint64_t size) noexcept nogil:
+    return (size + ALIGNMENT - 1) & ~<uint64_t>(ALIGNMENT - 1)
+
+
+cdef inline char* data_of(Head* head) noexcept nogil:
+    return <char*>head + aligned(sizeof(Head)) + aligned(head.max_procs * sizeof(Diag))
+
+
+cdef inline int64_t now_ns() noexcept nogil:
+    cdef timespec t
+    clock_gettime(CLOCK_MONOTONIC, &t)
+    return <int64_t>t.tv_sec * 1_000_000_000 + t.tv_nsec
+
+
+# Single slot
+
+cdef inline Record* slot_of(Head* head, uint64_t number) noexcept nogil:
+    return <Record*>(data_of(head) + (number % SLOTS) * aligned(sizeof(Record) + head.capacity))
+
+
+cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil:
+    """Publish a message of at most ``capacity`` bytes. For the only writer of the buffer."""
+    cdef Head* head = <Head*>buffer
+    cdef uint64_t number = head.write_counter + 1
+    cdef Record* slot = slot_of(head, number)
+    nml_store(&slot.id, 0)
+    nml_fence()  # SYNC POINT: a reader that sees new bytes also sees id 0
+    slot.length = size
+    slot.time_ns = now_ns()
+    memcpy(slot + 1, src, size)
+    nml_store(&slot.id, number)
+    nml_store(&head.write_counter, number)  # SYNC POINT: published
+    nml_wake(&head.signal, &head.waiters)
+
+
+cdef uint64_t write_count(void* buffer) noexcept nogil:
+    """Messages ever written to the buffer."""
+    return nml_load(&(<Head*>buffer).write_counter)
+
+
+# Queues
+
+cdef inline uint64_t record_size(uint64_t length) noexcept nogil:
+    return (sizeof(Record) + length + RECORD_STEP - 1) & ~<uint64_t>(RECORD_STEP - 1)
+
+
+cdef inline Record* record_at(Head* head, uint64_t at) noexcept nogil:
+    """The record that starts at a position of the endless tape that the ring shows; never split, see RECORD_STEP."""
+    return <Record*>(data_of(head) + at % head.capacity)
+
+
+cdef void ring_put(Head* head, uint64_t at, const char* src, uint64_t size) noexcept nogil:
+    cdef uint64_t start = at % head.capacity
+    cdef uint64_t first = min(size, head.capacity - start)
+    memcpy(data_of(head) + start, src, first)
+    if first < size:
+        memcpy(data_of(head), src + first, size - first)
+
+
+cdef void ring_get(Head* head, uint64_t at, char* dst, uint64_t size) noexcept nogil:
+    cdef uint64_t start = at % head.capacity
+    cdef uint64_t first = min(size, head.capacity - start)
+    memcpy(dst, data_of(head) + start, first)
+    if first < size:
+        memcpy(dst + first, data_of(head), size - first)
+
+
+cdef uint64_t paired(uint64_t* counter, uint64_t* position, uint64_t* at) noexcept nogil:
+    """A committed counter and, in ``at``, the position that belongs to it."""
+    cdef uint64_t number = nml_load(counter)
+    while True:
+        at[0] = nml_load(&position[number & 1])
+        again = nml_load(counter)
+        if again == number:
+            return number
+        number = again
+
+
+cdef void ring_commit(Head* head, uint64_t number, uint64_t tail) noexcept nogil:
+    nml_store(&head.tail[number & 1], tail)
+    nml_store(&head.write_counter, number)  # SYNC POINT: the record exists
+    nml_wake(&head.signal, &head.waiters)
+
+
+cdef void ring_write(Head* head, uint64_t tail, const char* src, uint64_t size) noexcept nogil:
+    cdef Record* record = record_at(head, tail)
+    cdef uint64_t number = head.write_counter + 1
+    record.id = number
+    record.length = size
+    record.time_ns = now_ns()
+    record.writer = getpid()
+    ring_put(head, tail + sizeof(Record), src, size)
+    ring_commit(head, number, tail + record_size(size))
+
+
+cdef int queue_push(void* buffer, const void* src, size_t size) noexcept nogil:
+    """Append a message; 0, or -1 if there is no room. For the only writer of the buffer (or the holder of the lock)."""
+    cdef Head* head = <Head*>buffer
+    cdef uint64_t start, tail
+    paired(&head.read_counter, head.head, &start)
+    paired(&head.write_counter, head.tail, &tail)
+    if record_size(size) > head.capacity - (tail - start):
+        return -1
+    ring_write(head, tail, <const char*>src, size)
+    return 0
+
+
+cdef size_t queue_pop(void* buffer, void* dst, size_t capacity) noexcept nogil:
+    """Take the oldest message: its length, 0 if there is none; ``capacity`` bytes at most are copied.
+
+    For the only reader of the buffer.
+    """
+    cdef Head* head = <Head*>buffer
+    cdef uint64_t at
+    cdef uint64_t number = paired(&head.read_counter, head.head, &at)
+    if nml_load(&head.write_counter) == number:
+        return 0
+    cdef uint64_t length = record_at(head, at).length
+    ring_get(head, at + sizeof(Record), <char*>dst, min(length, <uint64_t>capacity))
+    queue_commit_read(head, number + 1, at + record_size(length))
+    return length
+
+
+cdef void queue_commit_read(Head* head, uint64_t number, uint64_t start) noexcept nogil:
+    nml_store(&head.head[number & 1], start)
+    nml_store(&head.read_counter, number)  # SYNC POINT: the record is gone
+    nml_store_max(&head.seen, number)
+
+
+cdef void drop_until_room(Head* head, uint64_t tail, uint64_t size) noexcept nogil:
+    """Broadcast: drop the oldest records until ``size`` bytes are free."""
+    cdef uint64_t start
+    cdef uint64_t number = paired(&head.read_counter, head.head, &start)
+    while size > head.capacity - (tail - start):
+        start += record_size(record_at(head, start).length)
+        number += 1
+        nml_store(&head.head[number & 1], start)
+        nml_store(&head.read_counter, number)
+    nml_fence()  # SYNC POINT: a reader that copies overwritten bytes sees the new read counter
+
+
+def segment_size(int kind, uint64_t size, uint32_t max_procs) -> int:
+    """Bytes of the segment for a buffer of ``size`` bytes."""
+    cdef uint64_t data = SLOTS * aligned(sizeof(Record) + size) if kind == KIND_SLOT else aligned(size)
+    return aligned(sizeof(Head)) + aligned(max_procs * sizeof(Diag)) + data
+
+
+def format_segment(memory, str name, int kind, uint64_t size, uint32_t max_procs) -> None:
+    """Make an empty buffer in ``memory``, which nobody else uses."""
+    cdef unsigned char[::1] view = memory
+    cdef Head* head = <Head*>&view[0]
+    nml_store(&head.version, 0)
+    memset(<char*>head + sizeof(uint64_t), 0, segment_size(kind, 0, max_procs) - sizeof(uint64_t))
+    head.kind = kind
+    head.max_procs = max_procs
+    head.capacity = size if kind == KIND_SLOT else aligned(size)
+    head.total = segment_size(kind, size, max_procs)
+    if kind == KIND_SLOT:
+        for number in range(SLOTS):
+            slot_of(head, number).id = 0
+    encoded = name.encode()
+    strncpy(head.name, encoded, NAME_LENGTH - 1)
+    renew_locks(memory)
+    nml_store(&head.version, VERSION)  # SYNC POINT: complete
+
+
+def renew_locks(memory) -> None:
+    """Free both locks of a buffer that nobody else uses."""
+    cdef unsigned char[::1] view = memory
+    cdef Head* head = <Head*>&view[0]
+    if nml_mutex_init(&head.write_lock) or nml_mutex_init(&head.read_lock):
+        raise BufferError_("this system has no robust process-shared mutex")
+
+
+def is_complete(memory) -> bool:
+    """Whether a buffer was made to its end in ``memory``, by this version of the program."""
+    cdef unsigned char[::1] view = memory
+    return nml_load(&(<Head*>&view[0]).version) == VERSION
+
+
+def check_segment(memory, str name, int kind, uint64_t size, uint32_t max_procs) -> None:
+    """BufferError_ unless the complete buffer in ``memory`` has just this declaration."""
+    cdef unsigned char[::1] view = memory
+    cdef Head* head = <Head*>&view[0]
+    found = (head.name.decode(), head.kind, head.total, head.max_procs)
+    wanted = (name, kind, segment_size(kind, size, max_procs), max_procs)
+    if found != wanted:
+        raise BufferError_(
+            f"buffer {name}: in use with another declaration: (name, kind, bytes, processes) {found}, here {wanted}"
+        )
+
+
+cdef class Buffer:
+    """A process's hold on one buffer; for one thread at a time, except ``wait``."""
+
+    def __cinit__(
+        self,
+        memory,
+        *,
+        double timeout=-1.0,
+        bint lock_writes=True,
+        bint shared=False,
+        int c_num=-1,
+        str process="",
+    ):
+        cdef unsigned char[::1] view = memory
+        self.memory = memory
+        self.head = <Head*>&view[0]
+        self.data = data_of(self.head)
+        self.name = self.head.name.decode()
+        self.timeout = timeout
+        self.lock_writes = lock_writes
+        self.shared = shared
+        if c_num >= 0:
+            self.diag = <Diag*>(<char*>self.head + aligned(sizeof(Head))) + c_num
+            memset(self.diag, 0, sizeof(Diag))
+            encoded = process.encode()
+            strncpy(self.diag.name, encoded, sizeof(self.diag.name) - 1)
+            self.diag.pid = getpid()
+        if self.head.kind == KIND_BROADCAST:
+            self.join()
+
+    @property
+    def address(self) -> int:
+        """Address of the head, for the C functions."""
+        return <size_t>self.head
+
+    @property
+    def kind(self) -> int:
+        return self.head.kind
+
+    @property
+    def write_counter(self) -> int:
+        """Messages ever written."""
+        self.check_open()
+        return nml_load(&self.head.write_counter)
+
+    @property
+    def longest(self) -> int:
+        """Length of the longest message that fits."""
+        return self.head.capacity if self.head.kind == KIND_SLOT else self.head.capacity - sizeof(Record)
+
+    cdef int check_open(self) except -1:
+        if self.closed:
+            raise BufferError_(f"buffer {self.name}: the channel is closed")
+        return 0
+
+    cdef int lock(self, pthread_mutex_t* mutex) except -1:
+        """Take a lock within the timeout; a dead owner's lock is taken over."""
+        cdef int failed = pthread_mutex_trylock(mutex)
+        cdef double seconds = self.timeout
+        if failed == EBUSY and seconds != 0.0:
+            with nogil:
+                failed = nml_lock_until(mutex, seconds)
+        if failed == EOWNERDEAD:
+            failed = pthread_mutex_consistent(mutex)
+        if failed == EBUSY or failed == ETIMEDOUT:
+            raise ChannelTimeout(f"buffer {self.name}: in use by another process for {seconds} s")
+        if failed:
+            raise BufferError_(f"buffer {self.name}: lock failed: {strerror(failed).decode()}")
+        return 0
+
+    def hold_lock(self) -> None:
+        """Take the writers' lock and keep it; for tests of what follows from that."""
+        self.lock(&self.head.write_lock)
+
+    cdef void account(self, bint wrote, size_t size, int32_t type_id, bint new) noexcept:
+        cdef Diag* diag = self.diag
+        cdef int64_t now = now_ns(), gap
+        if diag.last_ns:
+            gap = now - diag.last_ns
+            diag.shortest_ns = gap if not diag.shortest_ns else min(gap, diag.shortest_ns)
+            diag.longest_ns = max(gap, diag.longest_ns)
+        else:
+            diag.first_ns = now
+        diag.last_ns = now
+        if wrote:
+            diag.writes += 1
+            diag.bytes_written += size
+        else:
+            diag.reads += 1
+            diag.new_reads += new
+            diag.bytes_read += size
+        if new:
+            diag.last_type = type_id
+
+    def write(self, data, bint serial=False, bint only_if_read=False) -> int:
+        """Publish a message and return its number; 0 if ``only_if_read`` and the last one was not read yet.
+
+        ``serial`` stores the number at the place of ``serial_number``, also in ``data``.
+        """
+        cdef bytearray source = data if type(data) is bytearray else bytearray(data)
+        cdef char* src = PyByteArray_AS_STRING(source)
+        cdef uint64_t size = PyByteArray_GET_SIZE(source)
+        cdef Head* head = self.head
+        cdef uint64_t number, tail
+        cdef int failed = 0
+        self.check_open()
+        if size > self.longest:
+            raise EncodeError(f"buffer {self.name}: {size} bytes, the longest message has {self.longest}")
+        if self.lock_writes:
+            self.lock(&head.write_lock)
+        if only_if_read and not self.was_read():
+            if self.lock_writes:
+                pthread_mutex_unlock(&head.write_lock)
+            return 0
+        number = head.write_counter + 1
+        if serial and size >= SERIAL_END:
+            (<int32_t*>(src + SERIAL_AT))[0] = <int32_t>number
+        if head.kind == KIND_SLOT:
+            slot_of(head, number).writer = getpid()
+            slot_write(head, src, size)
+        elif head.kind == KIND_QUEUE:
+            failed = queue_push(head, src, size)
+        else:
+            paired(&head.write_counter, head.tail, &tail)
+            drop_until_room(head, tail, record_size(size))
+            ring_write(head, tail, src, size)
+        if self.lock_writes:
+            pthread_mutex_unlock(&head.write_lock)
+        if failed:
+            raise QueueFull(f"buffer {self.name}: the queue has no room for {size} bytes")
+        if self.diag is not NULL:
+            self.account(True, size, (<int32_t*>src)[0] if size >= 4 else 0, True)
+        return number
+
+    def read(self):
+        """The next message as a bytearray, taken from a queue; None if there is nothing new."""
+        return self.take(True)
+
+    def peek(self):
+        """As ``read``, but a queue keeps the message and a single slot is not marked as read."""
+        return self.take(False)
+
+    def take(self, bint consume):
+        self.check_open()
+        if self.head.kind == KIND_SLOT:
+            message = self.take_slot(None)
+            if message is not None and consume:
+                nml_store_max(&self.head.seen, self.last)
+        elif self.head.kind == KIND_QUEUE:
+            message = self.take_queue(consume)
+        else:
+            message = self.take_broadcast(consume)
+        if self.diag is not NULL:
+            new = message is not None
+            self.account(False, len(message) if new else 0, type_of(message) if new else 0, new)
+        return message
+
+    def poll_into(self, bytearray into not None) -> bool:
+        """Single slot: copy a new message over the start of ``into``; False if there is none. Marks nothing as read."""
+        if self.closed:
+            self.check_open()
+        if nml_load(&self.head.write_counter) == self.last:
+            return False
+        return self.take_slot(into) is not None
+
+    cdef object take_slot(self, bytearray into):
+        """The newest message if it is new to this channel; copied to ``into`` if given."""
+        cdef Head* head = self.head
+        cdef Record* slot
+        cdef uint64_t number, length
+        while True:
+            number = nml_load(&head.write_counter)
+            if number == self.last or number <= nml_load(&head.cleared):
+                return None
+            slot = slot_of(head, number)
+            if nml_load(&slot.id) != number:
+                continue
+            length = min(slot.length, head.capacity)
+            message = bytearray(length) if into is None else into
+            if <uint64_t>PyByteArray_GET_SIZE(message) < length:
+                raise BufferError_(f"buffer {self.name}: the message has {length} bytes, the reader {len(message)}")
+            memcpy(PyByteArray_AS_STRING(message), slot + 1, length)
+            nml_fence()  # SYNC POINT: nothing was overwritten if the id is still the same
+            if nml_load(&slot.id) == number:
+                self.last = number
+                return message
+
+    cdef object take_queue(self, bint consume):
+        cdef Head* head = self.head
+        cdef uint64_t at, number, length
+        if nml_load(&head.write_counter) == nml_load(&head.read_counter):
+            return None
+        self.lock(&head.read_lock)
+        number = paired(&head.read_counter, head.head, &at)
+        if nml_load(&head.write_counter) == number:
+            pthread_mutex_unlock(&head.read_lock)
+            return None
+        length = record_at(head, at).length
+        message = bytearray(length)
+        ring_get(head, at + sizeof(Record), PyByteArray_AS_STRING(message), length)
+        if consume:
+            queue_commit_read(head, number + 1, at + record_size(length))
+        pthread_mutex_unlock(&head.read_lock)
+        self.last = number + 1
+        return message
+
+    def join(self) -> None:
+        """Broadcast: put the cursor before the first message that no reader has taken yet."""
+        cdef Head* head = self.head
+        cdef uint64_t first, at, number, target, length
+        while True:
+            first = paired(&head.read_counter, head.head, &at)
+            number = first
+            target = nml_load(&head.seen)
+            while number < target:
+                length = record_at(head, at).length
+                if length > head.capacity:
+                    break
+                at += record_size(length)
+                number += 1
+            nml_fence()
+            if number >= target and nml_load(&head.read_counter) == first:
+                self.cursor_id, self.cursor_at = number, at
+                return
+
+    cdef object take_broadcast(self, bint consume):
+        if not self.shared:
+            return self.follow(consume)
+        self.lock(&self.head.read_lock)
+        try:
+            if self.head.shared_check == self.head.shared_id and self.head.shared_id:
+                self.cursor_id, self.cursor_at = self.head.shared_id, self.head.shared_at
+            message = self.follow(consume)
+            if consume and message is not None:
+                self.head.shared_check = 0
+                nml_fence()
+                self.head.shared_at = self.cursor_at
+                self.head.shared_id = self.cursor_id
+                nml_store(&self.head.shared_check, self.cursor_id)
+            return message
+        finally:
+            pthread_mutex_unlock(&self.head.read_lock)
+
+    def follow(self, bint consume):
+        """Broadcast: the message after this reader's cursor."""
+        cdef Head* head = self.head
+        cdef uint64_t oldest, at, length
+        while nml_load(&head.write_counter) > self.cursor_id:
+            oldest = paired(&head.read_counter, head.head, &at)
+            if oldest > self.cursor_id:
+                self.missed += oldest - self.cursor_id
+                self.cursor_id, self.cursor_at = oldest, at
+                continue
+            length = record_at(head, self.cursor_at).length
+            if length > head.capacity:
+                continue
+            message = bytearray(length)
+            ring_get(head, self.cursor_at + sizeof(Record), PyByteArray_AS_STRING(message), length)
+            nml_fence()  # SYNC POINT: the record was whole if it is not dropped yet
+            if nml_load(&head.read_counter) > self.cursor_id:
+                continue
+            if consume:
+                self.cursor_id += 1
+                self.cursor_at += record_size(length)
+                nml_store_max(&head.seen, self.cursor_id)
+            self.last = self.cursor_id
+            return message
+        return None
+
+    def has_news(self) -> bool:
+        """Whether ``read`` would return a message."""
+        cdef uint64_t number = nml_load(&self.head.write_counter)
+        if self.head.kind == KIND_SLOT:
+            return number != self.last and number > nml_load(&self.head.cleared)
+        if self.head.kind == KIND_QUEUE:
+            return number != nml_load(&self.head.read_counter)
+        if self.shared and self.head.shared_id:
+            return number > self.head.shared_id
+        return number > self.cursor_id
+
+    def was_read(self) -> bool:
+        """Whether somebody has read the newest message (queue: all of them)."""
+        if self.head.kind == KIND_QUEUE:
+            return nml_load(&self.head.write_counter) == nml_load(&self.head.read_counter)
+        return nml_load(&self.head.seen) >= nml_load(&self.head.write_counter)
+
+    def wait(self, double seconds) -> bool:
+        """Sleep until there is something new to read, at most ``seconds`` (host time; negative: for ever)."""
+        cdef uint32_t signal
+        cdef int64_t left, until = now_ns() + <int64_t>(seconds * 1e9)
+        cdef Head* head = self.head
+        self.check_open()
+        if self.diag is not NULL:
+            self.diag.waits += 1
+        self.sleeping += 1
+        try:
+            while not self.closed:
+                signal = nml_load32(&head.signal)
+                if self.has_news():
+                    return True
+                left = LONGEST_SLEEP_NS if seconds < 0.0 else min(until - now_ns(), <int64_t>LONGEST_SLEEP_NS)
+                if left <= 0:
+                    return False
+                with nogil:
+                    nml_sleep(&head.signal, &head.waiters, signal, left)
+                PyErr_CheckSignals()
+            return False
+        finally:
+            self.sleeping -= 1
+            if self.closed and not self.sleeping:
+                self.memory = None
+
+    def queue_length(self) -> int:
+        """Messages that wait for this reader; 0 for a single slot."""
+        self.check_open()
+        if self.head.kind == KIND_SLOT:
+            return 0
+        if self.head.kind == KIND_QUEUE:
+            return nml_load(&self.head.write_counter) - nml_load(&self.head.read_counter)
+        oldest = max(self.cursor_id, nml_load(&self.head.read_counter))
+        return nml_load(&self.head.write_counter) - oldest
+
+    def space(self) -> int:
+        """Bytes of the longest message that could be written now."""
+        cdef uint64_t start, tail, free
+        self.check_open()
+        if self.head.kind != KIND_QUEUE:
+            return self.longest
+        paired(&self.head.read_counter, self.head.head, &start)
+        paired(&self.head.write_counter, self.head.tail, &tail)
+        free = self.head.capacity - (tail - start)
+        return free - sizeof(Record) if free > sizeof(Record) else 0
+
+    def clear(self) -> None:
+        """Forget every message; numbers go on."""
+        cdef Head* head = self.head
+        cdef uint64_t tail, number
+        self.check_open()
+        if head.kind == KIND_SLOT:
+            nml_store(&head.cleared, nml_load(&head.write_counter))
+            return
+        if head.kind == KIND_BROADCAST:
+            nml_store_max(&head.seen, nml_load(&head.write_counter))
+            return
+        self.lock(&head.read_lock)
+        number = paired(&head.write_counter, head.tail, &tail)
+        queue_commit_read(head, number, tail)
+        pthread_mutex_unlock(&head.read_lock)
+
+    def age(self) -> float | None:
+        """Seconds since the newest message was written; None if there never was one."""
+        cdef Record* record = self.newest()
+        return None if record is NULL else (now_ns() - record.time_ns) * 1e-9
+
+    def last_writer(self) -> int:
+        """Process id of the writer of the newest message; 0 if unknown (a native thread)."""
+        cdef Record* record = self.newest()
+        return 0 if record is NULL else record.writer
+
+    cdef Record* newest(self):
+        cdef Head* head = self.head
+        cdef uint64_t number = nml_load(&head.write_counter)
+        return slot_of(head, number) if number and head.kind == KIND_SLOT else NULL
+
+    def diagnostics(self) -> list[dict[str, object]]:
+        """The counts of every process that has used a buffer declared ``diag``."""
+        cdef Diag* diag = <Diag*>(<char*>self.head + aligned(sizeof(Head)))
+        self.check_open()
+        return [dict(diag[i], name=diag[i].name.decode(), c_num=i) for i in range(self.head.max_procs) if diag[i].pid]
+
+    def close(self) -> None:
+        """Let go of the memory; a ``wait`` in another thread ends."""
+        if not self.closed:
+            self.closed = True
+            if self.sleeping:
+                nml_wake(&self.head.signal, &self.head.waiters)
+            else:
+                self.memory = None
+
+
+cdef int32_t type_of(bytearray message) noexcept:
+    if message is None or PyByteArray_GET_SIZE(message) < 4:
+        return 0
+    return (<int32_t*>PyByteArray_AS_STRING(message))[0]
