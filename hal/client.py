@@ -36,6 +36,10 @@ class HostClient:
         self._socket: socket.socket | None = None
         self._rest = b""
 
+    def start(self) -> None:
+        """Start the host where there is none; the first request then waits until it answers."""
+        self._connect(start=True)
+
     def loadrt(self, name: str, words: list[str]) -> None:
         """Load a realtime module; the host is started if there is none."""
         self._connect(start=True)

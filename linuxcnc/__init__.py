@@ -1,7 +1,7 @@
 """``import linuxcnc``: status, commands, operator messages and INI values of a machine, under LinuxCNC's names.
 
-The classes talk to task through the NML buffers emcStatus, emcCommand and emcError of the namespace (``PYEMC_NAMESPACE``)
-and of the NML file that ``nmlfile`` names. The constants are in ``_constants``, with the numbers of LinuxCNC 2.9.
+The classes talk to task through the NML buffers emcStatus, emcCommand and emcError of the namespace that the variable
+``PYEMC_NAMESPACE`` names, and of the NML file ``nmlfile``. The constants have the numbers of LinuxCNC 2.9.
 """
 
 from linuxcnc._command import command

@@ -1,7 +1,7 @@
 """``linuxcnc.command``: every command that a user interface can give, one method for each.
 
-A method writes one message to emcCommand and returns when task has taken it, as LinuxCNC's does; ``wait_complete`` waits
-until it is done. Both sleep on the status buffer itself and wake with its next write, so a round trip costs no polling.
+A method writes one message to emcCommand and returns when task has taken it, as LinuxCNC's does; ``wait_complete``
+waits until it is done. Both sleep on the status buffer itself and wake with its next write: no polling, no delay.
 """
 
 from __future__ import annotations

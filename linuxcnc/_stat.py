@@ -11,8 +11,9 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import Any, Generic, NamedTuple, TypeVar, overload
 
-from linuxcnc._connection import open_channel, pose_tuple
 from nml.channel import Channel
+
+from linuxcnc._connection import open_channel, pose_tuple
 from nml.emc import EMC_STAT, EMC_TOOL_TABLE
 
 T = TypeVar("T")
@@ -257,6 +258,10 @@ class stat:
         message = self._fetch()
         if message is not None:
             self._message = message
+
+    def wait(self, timeout: float) -> bool:
+        """Wait up to ``timeout`` s for a status that ``poll`` has not fetched; at once true when there is one."""
+        return self._channel.wait(timeout)
 
     @property
     def tool_table(self) -> tuple[tool_result, ...]:

@@ -41,7 +41,8 @@ def blocks() -> list[str]:
         if row % 2:
             xs.reverse()
         if row == 0:
-            lines += [f"G0 Z{CLEARANCE:.3f}", f"G0 X{xs[0]:.3f} Y{y:.3f}", f"G1 Z{height(xs[0], y):.4f} F600", f"F{FEED}"]
+            lines += [f"G0 Z{CLEARANCE:.3f}", f"G0 X{xs[0]:.3f} Y{y:.3f}"]
+            lines += [f"G1 Z{height(xs[0], y):.4f} F600", f"F{FEED}"]
         lines += [f"G1 X{x:.3f} Y{y:.3f} Z{height(x, y):.4f}" for x in xs]
     return [*lines, f"G0 Z{CLEARANCE:.3f}", "M9", "M5", "M2"]
 

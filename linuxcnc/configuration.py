@@ -1,0 +1,122 @@
+"""What an INI file asks the launcher to start: files that must exist, programs by LinuxCNC's names, environment."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+import nml
+from nml import clock, namespace
+from nml.errors import ConfigError, Place
+from nml.inifile import IniFile
+
+# Programs of ours by the names that INI files use
+MODULES = {
+    "milltask": "emctask",
+    "linuxcnctask": "emctask",
+    "io": "emcio",
+    "iov2": "emcio",
+    "halui": "gui.halui",
+    "linuxcncrsh": "gui.linuxcncrsh",
+}
+PACKAGES_FOLDER = Path(nml.__file__).parent.parent
+HALLIB = Path("/usr/share/linuxcnc/hallib")
+NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
+
+
+class Configuration:
+    """A checked INI file: everything it names exists, or ConfigError says what does not."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.resolve()
+        self.folder = self.path.parent
+        self.ini = IniFile(self.path)
+        self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
+        self.ini.find("TRAJ", "COORDINATES")
+        self.nml_file = self._nml_file()
+        self.hal_files = self._hal_files()
+        self.hal_commands = self.ini.findall("HAL", "HALCMD")
+        self.task = self._command("TASK", "TASK", "milltask")
+        self.io = self._command("EMCIO", "EMCIO", "io")
+        self.halui = self._command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
+
+    def display(self) -> list[str]:
+        """Command line of the display; only asked for when one is to be started."""
+        if self.ini.find("DISPLAY", "DISPLAY") is None:
+            raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
+        return self._command("DISPLAY", "DISPLAY", "linuxcncrsh")
+
+    def _command(self, section: str, key: str, default: str) -> list[str]:
+        """The command line of the program that an entry names: one of ours, or an executable."""
+        words = shlex.split(self.ini.find(section, key, default))
+        module = MODULES.get(words[0]) if words else None
+        if module is not None and importlib.util.find_spec(module) is not None:
+            return [*python_module(module), *words[1:], "-ini", str(self.path)]
+        executable = words and shutil.which(words[0], path=self._search_path())
+        if executable:
+            return [executable, *words[1:], "-ini", str(self.path)]
+        raise ConfigError(
+            f"[{section}]{key} = {' '.join(words)}: no such program; "
+            f"one of {', '.join(sorted(MODULES))} or an executable is allowed",
+            self.ini.place(section, key),
+        )
+
+    def _search_path(self) -> str:
+        return os.pathsep.join([str(self.folder / "bin"), str(self.folder), os.environ.get("PATH", os.defpath)])
+
+    def _nml_file(self) -> Path | None:
+        name = self.ini.find("EMC", "NML_FILE")
+        if name is None:
+            return None
+        path = self.folder / name
+        if not path.is_file():
+            raise ConfigError(
+                f"[EMC]NML_FILE = {name}: there is no file {path}; leave the entry out to use the built-in one",
+                self.ini.place("EMC", "NML_FILE"),
+            )
+        return path
+
+    def _hal_files(self) -> list[Path]:
+        names = self.ini.findall("HAL", "HALFILE")
+        return [self._hal_file(name, number) for number, name in enumerate(names, 1)]
+
+    def _hal_file(self, name: str, number: int) -> Path:
+        """Where a HALFILE is: beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
+        words = shlex.split(name)
+        place = self.ini.place("HAL", "HALFILE", number)
+        if len(words) != 1:
+            raise ConfigError(f"[HAL]HALFILE = {name}: one file name is allowed", place)
+        library_name = words[0].removeprefix("LIB:")
+        folders = (HALLIB,) if library_name != words[0] else (self.folder, HALLIB)
+        for folder in folders:
+            path = folder / library_name
+            if path.is_file():
+                return path
+        raise ConfigError(f"[HAL]HALFILE = {name}: there is no such file in {' or '.join(map(str, folders))}", place)
+
+    def environment(self) -> dict[str, str]:
+        """The environment of every process of this machine."""
+        variables = dict(os.environ)
+        variables |= {
+            namespace.VARIABLE: namespace.namespace(),
+            clock.VARIABLE: repr(clock.speed()),
+            "INI_FILE_NAME": str(self.path),
+            "CONFIG_DIR": str(self.folder),
+            "HALLIB_DIR": str(HALLIB),
+            "HALLIB_PATH": f".:{HALLIB}",
+            "LINUXCNC_NCFILES_DIR": str(NC_FILES),
+            "PATH": f"{self.folder / 'bin'}{os.pathsep}{variables.get('PATH', os.defpath)}",
+            "PYTHONPATH": os.pathsep.join(filter(None, [str(PACKAGES_FOLDER), variables.get("PYTHONPATH")])),
+        }
+        if self.nml_file is not None:
+            variables["NMLFILE"] = str(self.nml_file)
+        return variables
+
+
+def python_module(module: str) -> list[str]:
+    """Command line that runs one of our modules; ``-P`` keeps the working folder out of the import path."""
+    return [sys.executable, "-P", "-m", module]

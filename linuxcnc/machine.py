@@ -1,0 +1,191 @@
+"""The processes of one machine: started in their order, watched, and taken down together."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal._shm import USER
+from hal.client import HostClient
+from hal.core import Hal
+from linuxcnc import takedown
+from linuxcnc.configuration import Configuration
+from linuxcnc.guard import Guard
+from linuxcnc.halsetup import run_hal_files
+from linuxcnc.instance import Instance, ProcessRecord
+from nml import clock
+from nml.channel import Channel
+from nml.errors import PyemcError
+
+START_TIMEOUT = 15.0  # host seconds until a process must be ready
+POLL = 0.002  # host seconds between looks at a condition
+
+
+class MachineError(PyemcError):
+    """The machine does not start, or lost a process; the text is for the user."""
+
+
+@dataclass(slots=True)
+class Child:
+    """A started process and the file that takes its output."""
+
+    name: str
+    process: subprocess.Popen[bytes]
+    log: Path
+    shown: int = 0  # bytes of the log that were passed on
+
+    def new_output(self) -> list[str]:
+        """Whole lines written since the last call."""
+        data = self.log.read_bytes() if self.log.exists() else b""
+        end = len(data) if self.process.poll() is not None else data.rfind(b"\n") + 1
+        text = data[self.shown : end].decode(errors="replace")
+        self.shown = max(end, self.shown)
+        return [line for line in text.splitlines() if line.strip()]
+
+
+class Machine:
+    """All processes of one configuration; use as a context manager, whose end stops and ends everything."""
+
+    def __init__(self, configuration: Configuration, report: Callable[[str], None]) -> None:
+        self.configuration = configuration
+        self.report = report
+        self.children: list[Child] = []
+        self._nml_file = str(configuration.nml_file) if configuration.nml_file else None
+        self._environment = configuration.environment()
+        os.environ.update(self._environment)
+        self._instance = Instance()
+        for record in self._instance.remove_leftovers():
+            report(f"ended {record.name} (process {record.pid}) of an earlier run that was killed")
+        self._guard = Guard(self._instance, self._nml_file)
+        self._hal = Hal()
+        self._host = HostClient(self._hal)
+        self._host_record: ProcessRecord | None = None
+
+    def __enter__(self) -> Machine:
+        return self
+
+    def __exit__(self, *exc_info: object) -> None:
+        self.stop()
+
+    # --- starting --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Start everything but the display and wait until task is ready."""
+        configuration = self.configuration
+        self._host.start()
+        self._spawn("io", configuration.io)
+        self._spawn("task", configuration.task)
+        self.wait_until(self._host_runs, "the realtime host")
+        self.wait_until(self._component_ready("iocontrol"), "io")
+        if configuration.halui is not None:
+            self._spawn("halui", configuration.halui)
+            self.wait_until(self._component_ready("halui"), "halui")
+        run_hal_files(configuration)
+        self._record_user_components()
+        status = Channel(self._nml_file, "emcStatus", "xemc")
+        self.wait_until(lambda: status.peek() is not None, "task")
+
+    def start_display(self) -> Child:
+        """Start the display that the INI names, in the foreground."""
+        return self._spawn("display", self.configuration.display(), foreground=True)
+
+    def _spawn(self, name: str, command: list[str], *, foreground: bool = False) -> Child:
+        """Start one process; in the background it gets a session of its own, so that Ctrl-C reaches only us."""
+        log = self._instance.folder / f"{name}.log"
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                command,
+                env=self._environment,
+                cwd=self.configuration.folder,
+                stdin=None if foreground else subprocess.DEVNULL,
+                stdout=None if foreground else output,
+                stderr=None if foreground else output,
+                start_new_session=not foreground,
+            )
+        self._instance.add(ProcessRecord.of(process.pid, name))
+        child = Child(name, process, log)
+        self.children.append(child)
+        return child
+
+    def _host_runs(self) -> bool:
+        """Whether the realtime host has registered; then it is watched as the others are."""
+        pid, alive = self._hal.host_state()
+        if alive and self._host_record is None:
+            self._host_record = ProcessRecord.of(pid, "host")
+            self._instance.add(self._host_record)
+        return alive
+
+    def _component_ready(self, name: str) -> Callable[[], bool]:
+        def ready() -> bool:
+            component = self._hal.segment.find_comp(name)
+            return component is not None and component.ready
+
+        return ready
+
+    def _record_user_components(self) -> None:
+        """Programs that HAL files started belong to the machine and end with it."""
+        known = {child.process.pid for child in self.children} | {os.getpid()}
+        for component in self._hal.segment.comps():
+            if component.kind == USER and component.pid not in known:
+                known.add(component.pid)
+                self._instance.add(ProcessRecord.of(component.pid, component.name))
+
+    def wait_until(self, condition: Callable[[], bool], what: str) -> None:
+        """Wait for a condition while all processes live; MachineError after START_TIMEOUT."""
+        deadline = clock.host_now() + START_TIMEOUT
+        while not condition():
+            self.check()
+            if clock.host_now() > deadline:
+                raise MachineError(f"{what} is not ready after {START_TIMEOUT:g} s")
+            clock.host_sleep(POLL)
+
+    # --- watching --------------------------------------------------------------------------------------------------
+
+    def check(self) -> None:
+        """Pass on what the processes say; MachineError when one of them has ended."""
+        self._guard.keep()
+        if self._host_record is not None and not self._host_record.alive:
+            raise MachineError(f"the realtime host (process {self._host_record.pid}) died")
+        ended = [child for child in self.children if child.process.poll() is not None]
+        if not ended:
+            for child in self.children:
+                for line in child.new_output():
+                    self.report(line)
+            return
+        child = ended[0]
+        lines = child.new_output()
+        for line in lines[:-1]:
+            self.report(line)
+        raise MachineError(lines[-1] if lines else f"{child.name} {_how_it_ended(child.process.returncode)}")
+
+    # --- stopping --------------------------------------------------------------------------------------------------
+
+    def stop(self) -> None:
+        """Bring the machine to rest, end every process, remove every trace."""
+        records = self._instance.recorded()
+        problem = takedown.bring_to_rest(records, self._nml_file)
+        if problem:
+            self.report(problem)
+        for record in takedown.end_all(records):
+            self.report(f"{record.name} (process {record.pid}) did not end and was killed")
+        for child in self.children:
+            child.process.wait()
+        self._host.close()
+        self._hal.close()
+        self._guard.dismiss()
+        self._instance.release()
+
+
+def _how_it_ended(code: int) -> str:
+    if code < 0:
+        return f"was killed by signal {-code}"
+    return f"ended with exit code {code}"
+
+
+def to_stderr(line: str) -> None:
+    """The plain way to report."""
+    print(line, file=sys.stderr, flush=True)
