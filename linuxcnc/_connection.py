@@ -7,7 +7,6 @@ from operator import attrgetter
 from typing import Any
 
 from nml.channel import Channel
-
 from nml.errors import ConfigError, NmlError
 
 PROCESS = "xemc"  # the process line of clients in NML files

@@ -8,12 +8,12 @@ angles are in machine units (``linear_units`` per mm, ``angular_units`` per degr
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import islice
 from operator import attrgetter
 from typing import Any, Generic, NamedTuple, TypeVar, overload
 
-from nml.channel import Channel
-
 from linuxcnc._connection import open_channel, pose_tuple
+from nml.channel import Channel
 from nml.emc import EMC_STAT, EMC_TOOL_TABLE
 
 T = TypeVar("T")
@@ -247,17 +247,16 @@ class stat:
 
     def __init__(self) -> None:
         self._channel = open_channel("emcStatus")
-        self._fetch = self._channel.peek
         self._tools: Channel | None = None
         self._tool_table: tuple[tool_result, ...] = (NO_TOOL,)
-        self._message: EMC_STAT = EMC_STAT()
+        self._message = EMC_STAT()
+        self._data = self._message.data
+        self._poll_into = self._channel.poll_into
         self.poll()
 
     def poll(self) -> None:
         """Fetch the newest status; without a new one the old values stay."""
-        message = self._fetch()
-        if message is not None:
-            self._message = message
+        self._poll_into(self._data)
 
     def wait(self, timeout: float) -> bool:
         """Wait up to ``timeout`` s for a status that ``poll`` has not fetched; at once true when there is one."""
@@ -289,6 +288,6 @@ def _tool_table(message: EMC_TOOL_TABLE) -> tuple[tool_result, ...]:
             tool_result(
                 one.toolno, *pose_tuple(one.offset), one.diameter, one.frontangle, one.backangle, one.orientation
             )
-            for one in message.tools[: message.last_index + 1]
+            for one in islice(message.tools, message.last_index + 1)
         ]
     )

@@ -1,0 +1,1 @@
+"""Helpers of the tests: whole machines in namespaces of their own, clients, and an independent check of motion."""
