@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nml.message import Struct, double, integer, struct
+from nml.message import Struct, double, integer, real32, struct, ulong
 
 
 class PmCartesian(Struct):
@@ -35,3 +35,12 @@ class CANON_TOOL_TABLE(Struct):
     frontangle = double(unit="deg", doc="of a lathe tool")
     backangle = double(unit="deg", doc="of a lathe tool")
     orientation = integer(local=True, doc="0 to 9, of a lathe tool")
+
+
+class StateTag(Struct):
+    """What the interpreter's state was where a move was programmed."""
+
+    fields_float = real32(5, doc="line number, feed, speed, path tolerance, naive-cam tolerance")
+    fields = integer(8, doc="line number, G mode 0, cutter compensation, motion mode, plane, M modes 4, origin, tool")
+    packed_flags = ulong(doc="flags of the interpreter's modes")
+    flags = ulong(doc="the same, as C++ keeps them")
