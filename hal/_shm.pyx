@@ -261,6 +261,10 @@ cdef class Segment:
         self.at.host_pid, self.at.host_start = value
 
     @property
+    def size(self) -> int:
+        return sizeof(hal_segment)
+
+    @property
     def recoveries(self) -> int:
         return self.at.recoveries
 

@@ -47,10 +47,10 @@ class HostClient:
 
     def unloadrt(self, name: str) -> None:
         """Unload a module, or ``all`` of them and the host."""
-        if name == "all" and not self._connect():
-            self._forget_dead_host()
-            return
-        self._ask("unloadrt", name)
+        if name == "all":
+            self.quit()
+        else:
+            self._ask("unloadrt", name)
 
     def loaded(self) -> list[str]:
         """The realtime modules, in order of loading."""
@@ -66,7 +66,7 @@ class HostClient:
         self._ask("delf", funct, thread)
 
     def quit(self) -> None:
-        """Make the host stop its threads, unload everything and end; nothing happens where there is none."""
+        """Make the host stop its threads, unload everything and end; where it has died, clear up after it."""
         if self._connect():
             self._ask("quit")
             assert self._socket is not None

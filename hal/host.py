@@ -37,24 +37,15 @@ class Server:
         self._lines: dict[socket.socket, bytes] = {}
         self._requests: dict[str, Callable[..., Any]] = {
             "loadrt": self.host.load,
-            "unloadrt": self.unload,
+            "unloadrt": self.host.unload,
             "loaded": self.host.loaded,
             "addf": self.host.add_function,
             "delf": self.host.remove_function,
             "quit": self.quit,
         }
 
-    def unload(self, name: str) -> None:
-        """One module; ``all``: every one, and the host ends."""
-        if name != "all":
-            self.host.unload(name)
-            return
-        self.host.hal.halt_threads()
-        for loaded in reversed(self.host.loaded()):
-            self.host.unload(loaded)
-        self.quit()
-
     def quit(self) -> None:
+        """End: stop the threads, unload everything."""
         self.running = False
 
     def serve(self) -> None:

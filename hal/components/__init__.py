@@ -1,7 +1,7 @@
 """The built-in realtime components, found by the name that ``loadrt`` uses.
 
-Small ones are declared in the native modules of `GROUPS`, several to a module (see ``declare.py``); those that need code
-of their own at loading are modules here with a ``load(host, args)``.
+Small ones are declared in the native modules of `GROUPS`, several to a module (see ``declare.py``); those that need
+code of their own at loading are modules here with a ``load(host, args)``.
 """
 
 from __future__ import annotations

@@ -1,0 +1,296 @@
+"""``import hal``: components in Python with the names and meanings of LinuxCNC's module of that name.
+
+    import hal
+
+    with hal.component("blinker") as c:
+        c.newpin("out", hal.HAL_BIT, hal.HAL_OUT, safe=False)
+        c.ready()
+        c["out"] = True
+
+A component whose process dies is removed by the realtime host or by the next HAL command; its pins take their ``safe``
+values, if they declared any.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from hal import _shm
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
+from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
+from hal.values import TYPE_NAMES
+from nml import clock
+from nml.errors import HalError
+
+HAL_BIT, HAL_FLOAT, HAL_S32, HAL_U32, HAL_PORT, HAL_S64, HAL_U64 = BIT, FLOAT, S32, U32, PORT, S64, U64
+HAL_IN, HAL_OUT, HAL_IO = _shm.IN, _shm.OUT, _shm.IO
+HAL_RO, HAL_RW = _shm.RO, _shm.RW
+HAL_LOCK_NONE, HAL_LOCK_LOAD, HAL_LOCK_CONFIG, HAL_LOCK_PARAMS = LOCK_NONE, LOCK_LOAD, LOCK_CONFIG, LOCK_PARAMS
+HAL_LOCK_RUN, HAL_LOCK_TUNE, HAL_LOCK_ALL = LOCK_RUN, LOCK_TUNE, LOCK_ALL
+MSG_NONE, MSG_ERR, MSG_WARN, MSG_INFO, MSG_DBG, MSG_ALL = range(6)
+is_kernelspace, is_userspace, is_rt, is_sim = 0, 1, 1, 1
+
+error = HalError
+_door: list[Hal] = []
+_msg_level = MSG_ERR
+
+
+def door() -> Hal:
+    """This process's attachment to the HAL, made at first use and again after a fork."""
+    if _door and _door[0].segment.attached and _pid == os.getpid():
+        return _door[0]
+    _attach()
+    return _door[0]
+
+
+_pid = 0
+
+
+def _attach() -> None:
+    global _pid
+    _pid = os.getpid()
+    _door[:] = [Hal()]
+
+
+class Pin:
+    """A pin or parameter of a component: what ``newpin`` and ``newparam`` return."""
+
+    def __init__(self, item: Item, is_pin: bool) -> None:
+        self._item = item
+        self._is_pin = is_pin
+        self.get: Callable[[], Any] = item.get
+
+    def set(self, value: Any) -> None:
+        """OverflowError where the value does not fit the type."""
+        self._item.set(value)
+
+    value = property(lambda self: self._item.get(), lambda self, value: self._item.set(value))
+
+    def get_name(self) -> str:
+        return self._item.name
+
+    def get_type(self) -> int:
+        return self._item.type
+
+    def get_dir(self) -> int:
+        return self._item.dir
+
+    def is_pin(self) -> bool:
+        return self._is_pin
+
+    def wait(self, value: Any, timeout: float | None = None) -> bool:
+        """Wait until the pin has this value; False after ``timeout`` seconds of host time."""
+        end = None if timeout is None else clock.host_now() + timeout
+        while self._item.get() != value:
+            if end is not None and clock.host_now() > end:
+                return False
+            clock.host_sleep(0.0005)
+        return True
+
+    def __repr__(self) -> str:
+        return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._item.name} {TYPE_NAMES[self._item.type]}>"
+
+
+class component:
+    """A user component. Pins are items and attributes: ``c["in"]``, ``c.out = 1`` (names with ``-``: items only)."""
+
+    def __init__(self, name: str, prefix: str | None = None) -> None:
+        self.__dict__["_hal"] = door()
+        self.__dict__["_record"] = self._hal.add_component(name)
+        self.__dict__["_items"] = {}
+        self.__dict__["_pins"] = {}
+        self.__dict__["_prefix"] = name if prefix is None else prefix
+
+    def newpin(self, name: str, type: int, dir: int, safe: Any = None) -> Pin:
+        """A pin ``PREFIX.name``; ``safe``: the value that it takes when this process dies."""
+        self._check_alive()
+        item = self._hal.add_pin(self._record, f"{self._prefix}.{name}", type, dir)
+        if safe is not None:
+            item.set_safe(safe)
+        return self._keep(name, item, True)
+
+    def newparam(self, name: str, type: int, dir: int) -> Pin:
+        """A parameter ``PREFIX.name``."""
+        self._check_alive()
+        return self._keep(name, self._hal.add_param(self._record, f"{self._prefix}.{name}", type, dir), False)
+
+    def _keep(self, name: str, item: Item, is_pin: bool) -> Pin:
+        self._items[name] = item
+        pin = self._pins[name] = Pin(item, is_pin)
+        return pin
+
+    def getpin(self, name: str) -> Pin:
+        return self._find(self._pins, name)
+
+    getitem = getpin
+
+    def getpins(self) -> dict[str, Any]:
+        """All values by name."""
+        return {name: item.get() for name, item in self._items.items()}
+
+    def setprefix(self, prefix: str) -> None:
+        """The first part of the names of pins made from now on."""
+        self.__dict__["_prefix"] = prefix
+
+    def getprefix(self) -> str:
+        return self._prefix
+
+    def ready(self) -> None:
+        """All pins are there."""
+        self._check_alive()
+        self._record.ready = True
+
+    def unready(self) -> None:
+        """More pins are to come."""
+        self._check_alive()
+        self._record.ready = False
+
+    def exit(self) -> None:
+        """Leave the HAL; the pins are gone."""
+        if self._record is not None and self._record.exists:
+            self._hal.remove_component(self._record)
+        self.__dict__["_record"] = None
+        self._items.clear()
+        self._pins.clear()
+
+    @property
+    def name(self) -> str:
+        self._check_alive()
+        return self._record.name
+
+    @property
+    def id(self) -> int:
+        self._check_alive()
+        return self._record.id
+
+    def _check_alive(self) -> None:
+        if self._record is None:
+            raise HalError("Invalid operation on closed HAL component")
+
+    def _find(self, table: dict[str, Any], name: str) -> Any:
+        try:
+            return table[name]
+        except KeyError:
+            raise AttributeError(f"Pin '{name}' does not exist in component '{self._prefix}'") from None
+
+    def __getitem__(self, name: str) -> Any:
+        return self._find(self._items, name).get()
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        self._find(self._items, name).set(value)
+
+    def __getattr__(self, name: str) -> Any:
+        return self._find(self._items, name).get()
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self._find(self._items, name).set(value)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._items
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __enter__(self) -> component:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.exit()
+
+    def __repr__(self) -> str:
+        return f"<hal component {self._prefix} with {len(self._items)} pins and parameters>"
+
+
+def component_exists(name: str) -> bool:
+    """Whether a living component of that name is loaded."""
+    hal = door()
+    hal.reap()
+    return hal.segment.find_comp(name) is not None
+
+
+def component_is_ready(name: str) -> bool:
+    hal = door()
+    hal.reap()
+    comp = hal.segment.find_comp(name)
+    return comp is not None and comp.ready
+
+
+def new_sig(name: str, type: int) -> bool:
+    """Make a signal."""
+    door().new_signal(name, type)
+    return True
+
+
+def connect(pin: str, signal: str) -> bool:
+    """Link a pin to a signal."""
+    door().link(pin, signal)
+    return True
+
+
+def disconnect(pin: str) -> bool:
+    """Unlink a pin."""
+    door().unlink(pin)
+    return True
+
+
+def pin_has_writer(name: str) -> bool:
+    """Whether an output drives the signal that the pin is linked to."""
+    signal = door().pin(name).signal
+    return signal is not None and signal.writer() is not None
+
+
+def get_value(name: str) -> Any:
+    """The value of a pin, parameter or signal."""
+    return door().value(name)
+
+
+def set_p(name: str, value: str) -> bool:
+    """Set a pin or parameter, as ``halcmd setp`` does."""
+    door().set_item(name, str(value))
+    return True
+
+
+def set_s(name: str, value: str) -> bool:
+    """Set a signal, as ``halcmd sets`` does."""
+    door().set_signal(name, str(value))
+    return True
+
+
+def get_info_pins() -> list[dict[str, Any]]:
+    """NAME, VALUE, TYPE and DIRECTION of every pin."""
+    return [_info(item, "DIRECTION") for item in door().segment.items(PIN)]
+
+
+def get_info_params() -> list[dict[str, Any]]:
+    """NAME, VALUE, TYPE and DIRECTION of every parameter."""
+    return [_info(item, "DIRECTION") for item in door().segment.items(PARAM)]
+
+
+def _info(item: Item, direction: str) -> dict[str, Any]:
+    return {"NAME": item.shown, "VALUE": item.get(), "TYPE": item.type, direction: item.dir}
+
+
+def get_info_signals() -> list[dict[str, Any]]:
+    """NAME, VALUE, TYPE and DRIVER (None where no output drives it) of every signal."""
+    found = []
+    for signal in door().segment.signals():
+        writer = signal.writer()
+        driver = writer.shown if writer else None
+        found.append({"NAME": signal.name, "VALUE": signal.get(), "TYPE": signal.type, "DRIVER": driver})
+    return found
+
+
+def get_msg_level() -> int:
+    return _msg_level
+
+
+def set_msg_level(level: int) -> None:
+    """How much the HAL says, MSG_NONE to MSG_ALL."""
+    global _msg_level
+    _msg_level = level
+
