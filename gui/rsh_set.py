@@ -6,6 +6,7 @@ A function takes the session and the words behind the command, and gives the mac
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -36,9 +37,12 @@ def _real(words: list[str], position: int = 0, default: float | None = None) -> 
     if default is not None and len(words) <= position:
         return default
     try:
-        return float(_word(words, position))
+        value = float(_word(words, position))
     except ValueError:
         raise Refused from None
+    if not math.isfinite(value):
+        raise Refused
+    return value
 
 
 def _integer(words: list[str], position: int = 0, default: int | None = None) -> int:

@@ -6,6 +6,8 @@ waits until it is done. Both sleep on the status buffer itself and wake with its
 
 from __future__ import annotations
 
+from typing import Any
+
 import nml.emc as emc
 from linuxcnc import _constants as const
 from linuxcnc._connection import error, open_channel
@@ -67,14 +69,14 @@ class command:
 
     # --- sending and waiting ---------------------------------------------------------------------------------------
 
-    def _send(self, message: Command) -> None:
-        """Write ``message`` and wait until task has taken it."""
+    def _send(self, message: type[Command], **fields: Any) -> None:
+        """Write a message and wait until task has taken it."""
         try:
-            self.serial = self._commands.write(message)
+            self.serial = self._commands.write(message(**fields))
         except NmlError as reason:
-            raise error(f"{type(message).__name__}: {reason}") from reason
+            raise error(f"{message.__name__}: {reason}") from reason
         if not self._wait_for(received=True, timeout=RECEIVE_TIMEOUT):
-            raise error(f"{type(message).__name__}: task did not take it within {RECEIVE_TIMEOUT:g} s")
+            raise error(f"{message.__name__}: task did not take it within {RECEIVE_TIMEOUT:g} s")
 
     def _wait_for(self, *, received: bool, timeout: float) -> bool:
         """Follow the status until the last command is received or, else, done; false after ``timeout`` host seconds."""
@@ -100,62 +102,62 @@ class command:
 
     def state(self, state: int) -> None:
         """Set the machine's state: STATE_ESTOP, STATE_ESTOP_RESET, STATE_ON or STATE_OFF."""
-        self._send(emc.EMC_TASK_SET_STATE(state=state))
+        self._send(emc.EMC_TASK_SET_STATE, state=state)
 
     def mode(self, mode: int) -> None:
         """Set the mode: MODE_MANUAL, MODE_MDI or MODE_AUTO."""
-        self._send(emc.EMC_TASK_SET_MODE(mode=mode))
+        self._send(emc.EMC_TASK_SET_MODE, mode=mode)
 
     def abort(self) -> None:
         """Stop motion and program."""
-        self._send(emc.EMC_TASK_ABORT())
+        self._send(emc.EMC_TASK_ABORT)
 
     def debug(self, flags: int) -> None:
         """Set the debug flags, DEBUG_*."""
-        self._send(emc.EMC_SET_DEBUG(debug=flags))
+        self._send(emc.EMC_SET_DEBUG, debug=flags)
 
     # --- programs --------------------------------------------------------------------------------------------------
 
     def program_open(self, filename: str) -> None:
         """Load a program."""
-        self._send(emc.EMC_TASK_PLAN_OPEN(file=_text(filename, "program_open")))
+        self._send(emc.EMC_TASK_PLAN_OPEN, file=_text(filename, "program_open"))
 
     def auto(self, action: int, line: int = 0) -> None:
         """Run from ``line`` (AUTO_RUN), or AUTO_PAUSE, AUTO_RESUME, AUTO_STEP, AUTO_REVERSE, AUTO_FORWARD."""
         if action == const.AUTO_RUN:
-            self._send(emc.EMC_TASK_PLAN_RUN(line=line))
+            self._send(emc.EMC_TASK_PLAN_RUN, line=line)
         else:
-            self._send(_choose(AUTO_COMMANDS, action, "auto")())
+            self._send(_choose(AUTO_COMMANDS, action, "auto"))
 
     def mdi(self, block: str) -> None:
         """Execute one line of G-code."""
-        self._send(emc.EMC_TASK_PLAN_EXECUTE(command=_text(block, "mdi")))
+        self._send(emc.EMC_TASK_PLAN_EXECUTE, command=_text(block, "mdi"))
 
     def reset_interpreter(self) -> None:
         """Bring the interpreter back to its initial state."""
-        self._send(emc.EMC_TASK_PLAN_INIT())
+        self._send(emc.EMC_TASK_PLAN_INIT)
 
     def task_plan_synch(self) -> None:
         """Synchronise the interpreter with the machine and write the parameter file."""
-        self._send(emc.EMC_TASK_PLAN_SYNCH())
+        self._send(emc.EMC_TASK_PLAN_SYNCH)
 
     def set_optional_stop(self, on: int) -> None:
         """M1 stops, or does not."""
-        self._send(emc.EMC_TASK_PLAN_SET_OPTIONAL_STOP(state=bool(on)))
+        self._send(emc.EMC_TASK_PLAN_SET_OPTIONAL_STOP, state=bool(on))
 
     def set_block_delete(self, on: int) -> None:
         """Lines that begin with '/' are skipped, or are not."""
-        self._send(emc.EMC_TASK_PLAN_SET_BLOCK_DELETE(state=bool(on)))
+        self._send(emc.EMC_TASK_PLAN_SET_BLOCK_DELETE, state=bool(on))
 
     # --- joints and axes -------------------------------------------------------------------------------------------
 
     def home(self, joint: int) -> None:
         """Home a joint; -1: all of them in their sequence."""
-        self._send(emc.EMC_JOINT_HOME(joint=joint))
+        self._send(emc.EMC_JOINT_HOME, joint=joint)
 
     def unhome(self, joint: int) -> None:
         """Forget the home of a joint; -1: of all, -2: of the volatile ones."""
-        self._send(emc.EMC_JOINT_UNHOME(joint=joint))
+        self._send(emc.EMC_JOINT_UNHOME, joint=joint)
 
     def jog(self, action: int, joint_flag: int, index: int, velocity: float = 0.0, distance: float = 0.0) -> None:
         """Jog joint or axis ``index`` (``joint_flag`` true: joint).
@@ -165,67 +167,67 @@ class command:
         """
         which = {"joint_or_axis": index, "jjogmode": int(bool(joint_flag))}
         if action == const.JOG_STOP:
-            self._send(emc.EMC_JOG_STOP(**which))
+            self._send(emc.EMC_JOG_STOP, **which)
         elif action == const.JOG_CONTINUOUS:
-            self._send(emc.EMC_JOG_CONT(vel=velocity, **which))
+            self._send(emc.EMC_JOG_CONT, vel=velocity, **which)
         elif action == const.JOG_INCREMENT:
-            self._send(emc.EMC_JOG_INCR(vel=velocity, incr=distance, **which))
+            self._send(emc.EMC_JOG_INCR, vel=velocity, incr=distance, **which)
         else:
             raise error(f"jog({action}): JOG_STOP, JOG_CONTINUOUS or JOG_INCREMENT are allowed")
 
     def override_limits(self) -> None:
         """Allow jogging off a hard limit until the next jog ends."""
-        self._send(emc.EMC_JOINT_OVERRIDE_LIMITS(joint=0))
+        self._send(emc.EMC_JOINT_OVERRIDE_LIMITS, joint=0)
 
     def set_min_limit(self, joint: int, limit: float) -> None:
         """Set the lower soft limit of a joint."""
-        self._send(emc.EMC_JOINT_SET_MIN_POSITION_LIMIT(joint=joint, limit=limit))
+        self._send(emc.EMC_JOINT_SET_MIN_POSITION_LIMIT, joint=joint, limit=limit)
 
     def set_max_limit(self, joint: int, limit: float) -> None:
         """Set the upper soft limit of a joint."""
-        self._send(emc.EMC_JOINT_SET_MAX_POSITION_LIMIT(joint=joint, limit=limit))
+        self._send(emc.EMC_JOINT_SET_MAX_POSITION_LIMIT, joint=joint, limit=limit)
 
     def teleop_enable(self, on: int) -> None:
         """Jog axes (on) or joints (off)."""
-        self._send(emc.EMC_TRAJ_SET_TELEOP_ENABLE(enable=int(bool(on))))
+        self._send(emc.EMC_TRAJ_SET_TELEOP_ENABLE, enable=int(bool(on)))
 
     def traj_mode(self, mode: int) -> None:
         """Set the mode of motion: TRAJ_MODE_FREE, TRAJ_MODE_COORD or TRAJ_MODE_TELEOP."""
-        self._send(emc.EMC_TRAJ_SET_MODE(mode=mode))
+        self._send(emc.EMC_TRAJ_SET_MODE, mode=mode)
 
     # --- overrides -------------------------------------------------------------------------------------------------
 
     def feedrate(self, scale: float) -> None:
         """Feed override, 1.0 = 100 %."""
-        self._send(emc.EMC_TRAJ_SET_SCALE(scale=scale))
+        self._send(emc.EMC_TRAJ_SET_SCALE, scale=scale)
 
     def rapidrate(self, scale: float) -> None:
         """Rapid override, 1.0 = 100 %."""
-        self._send(emc.EMC_TRAJ_SET_RAPID_SCALE(scale=scale))
+        self._send(emc.EMC_TRAJ_SET_RAPID_SCALE, scale=scale)
 
     def spindleoverride(self, scale: float, spindle: int = 0) -> None:
         """Spindle override, 1.0 = 100 %."""
-        self._send(emc.EMC_TRAJ_SET_SPINDLE_SCALE(scale=scale, spindle=spindle))
+        self._send(emc.EMC_TRAJ_SET_SPINDLE_SCALE, scale=scale, spindle=spindle)
 
     def maxvel(self, velocity: float) -> None:
         """Largest path velocity in machine units per s."""
-        self._send(emc.EMC_TRAJ_SET_MAX_VELOCITY(velocity=velocity))
+        self._send(emc.EMC_TRAJ_SET_MAX_VELOCITY, velocity=velocity)
 
     def set_feed_override(self, on: int) -> None:
         """The feed override acts, or does not (M50)."""
-        self._send(emc.EMC_TRAJ_SET_FO_ENABLE(mode=int(bool(on))))
+        self._send(emc.EMC_TRAJ_SET_FO_ENABLE, mode=int(bool(on)))
 
     def set_spindle_override(self, on: int, spindle: int = 0) -> None:
         """The spindle override acts, or does not (M51)."""
-        self._send(emc.EMC_TRAJ_SET_SO_ENABLE(mode=int(bool(on)), spindle=spindle))
+        self._send(emc.EMC_TRAJ_SET_SO_ENABLE, mode=int(bool(on)), spindle=spindle)
 
     def set_feed_hold(self, on: int) -> None:
         """Feed hold acts, or does not (M53)."""
-        self._send(emc.EMC_TRAJ_SET_FH_ENABLE(mode=int(bool(on))))
+        self._send(emc.EMC_TRAJ_SET_FH_ENABLE, mode=int(bool(on)))
 
     def set_adaptive_feed(self, on: int) -> None:
         """Adaptive feed acts, or does not (M52)."""
-        self._send(emc.EMC_MOTION_ADAPTIVE(status=int(bool(on))))
+        self._send(emc.EMC_MOTION_ADAPTIVE, status=int(bool(on)))
 
     # --- spindle, coolant, tools, outputs --------------------------------------------------------------------------
 
@@ -238,60 +240,65 @@ class command:
         if direction in (const.SPINDLE_FORWARD, const.SPINDLE_REVERSE):
             speed, number, wait = (*args, *(0.0, 0, 0)[len(args) :])[:3]
             self._send(
-                emc.EMC_SPINDLE_ON(spindle=int(number), speed=direction * speed, wait_for_spindle_at_speed=int(wait))
+                emc.EMC_SPINDLE_ON, spindle=int(number), speed=direction * speed, wait_for_spindle_at_speed=int(wait)
             )
         elif direction == const.SPINDLE_OFF:
-            self._send(emc.EMC_SPINDLE_OFF(spindle=int(args[0]) if args else 0))
+            self._send(emc.EMC_SPINDLE_OFF, spindle=int(args[0]) if args else 0)
         else:
             step = _choose(SPINDLE_STEPS, direction, "spindle")
-            self._send(step(spindle=int(args[0]) if args else 0))
+            self._send(step, spindle=int(args[0]) if args else 0)
 
     def brake(self, action: int, spindle: int = 0) -> None:
         """BRAKE_ENGAGE or BRAKE_RELEASE the brake of a spindle."""
-        self._send(_choose(BRAKE_COMMANDS, action, "brake")(spindle=spindle))
+        self._send(_choose(BRAKE_COMMANDS, action, "brake"), spindle=spindle)
 
     def flood(self, on: int) -> None:
         """FLOOD_ON or FLOOD_OFF."""
-        self._send(_choose(FLOOD_COMMANDS, on, "flood")())
+        self._send(_choose(FLOOD_COMMANDS, on, "flood"))
 
     def mist(self, on: int) -> None:
         """MIST_ON or MIST_OFF."""
-        self._send(_choose(MIST_COMMANDS, on, "mist")())
+        self._send(_choose(MIST_COMMANDS, on, "mist"))
 
     def load_tool_table(self, filename: str = "") -> None:
         """Read the tool table again; empty: the file of the INI."""
-        self._send(emc.EMC_TOOL_LOAD_TOOL_TABLE(file=_text(filename, "load_tool_table")))
+        self._send(emc.EMC_TOOL_LOAD_TOOL_TABLE, file=_text(filename, "load_tool_table"))
 
     def tool_offset(
         self, toolno: int, z_offset: float, x_offset: float, diameter: float, frontangle: float, backangle: float,
         orientation: int,
     ) -> None:
         """Write one entry of the tool table."""
-        message = emc.EMC_TOOL_SET_OFFSET(
-            toolno=toolno, diameter=diameter, frontangle=frontangle, backangle=backangle, orientation=orientation
+        offset = (x_offset, 0.0, z_offset, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._send(
+            emc.EMC_TOOL_SET_OFFSET,
+            toolno=toolno,
+            offset=offset,
+            diameter=diameter,
+            frontangle=frontangle,
+            backangle=backangle,
+            orientation=orientation,
         )
-        message.offset.tran.z, message.offset.tran.x = z_offset, x_offset
-        self._send(message)
 
     def set_digital_output(self, index: int, value: int) -> None:
         """Set motion.digital-out-NN at once."""
         level = int(bool(value))
-        self._send(emc.EMC_MOTION_SET_DOUT(index=index, start=level, end=level, now=1))
+        self._send(emc.EMC_MOTION_SET_DOUT, index=index, start=level, end=level, now=1)
 
     def set_analog_output(self, index: int, value: float) -> None:
         """Set motion.analog-out-NN at once."""
-        self._send(emc.EMC_MOTION_SET_AOUT(index=index, start=value, end=value, now=1))
+        self._send(emc.EMC_MOTION_SET_AOUT, index=index, start=value, end=value, now=1)
 
     # --- messages --------------------------------------------------------------------------------------------------
 
     def error_msg(self, text: str) -> None:
         """Send an error message to all operators."""
-        self._send(emc.EMC_OPERATOR_ERROR(error=_text(text, "error_msg")))
+        self._send(emc.EMC_OPERATOR_ERROR, error=_text(text, "error_msg"))
 
     def text_msg(self, text: str) -> None:
         """Send a text message to all operators."""
-        self._send(emc.EMC_OPERATOR_TEXT(text=_text(text, "text_msg")))
+        self._send(emc.EMC_OPERATOR_TEXT, text=_text(text, "text_msg"))
 
     def display_msg(self, text: str) -> None:
         """Send a display message to all operators."""
-        self._send(emc.EMC_OPERATOR_DISPLAY(display=_text(text, "display_msg")))
+        self._send(emc.EMC_OPERATOR_DISPLAY, display=_text(text, "display_msg"))

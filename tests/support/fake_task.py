@@ -1,0 +1,55 @@
+"""Stands in for task in tests of clients: takes commands from emcCommand, remembers them, and answers in emcStatus."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from types import TracebackType
+
+from nml.channel import Channel
+from nml.emc import EMC_STAT
+from nml.message import Command
+
+RCS_DONE, RCS_ERROR = 1, 3
+
+
+class FakeTask:
+    """Answers every command with RCS_DONE, or with what ``answer(command, status)`` returns."""
+
+    def __init__(self, answer: Callable[[Command, EMC_STAT], int] | None = None) -> None:
+        self.status = EMC_STAT(status=RCS_DONE)
+        self.taken: list[Command] = []
+        self._answer = answer or (lambda command, status: RCS_DONE)
+        self._commands = Channel(None, "emcCommand", "emc")
+        self._statuses = Channel(None, "emcStatus", "emc")
+        self.errors = Channel(None, "emcError", "emc")
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self.publish()
+
+    def publish(self) -> None:
+        """Write the status as it is now."""
+        self._statuses.write(self.status)
+
+    def _run(self) -> None:
+        while not self._over.is_set():
+            if not self._commands.wait(0.05):
+                continue
+            while (command := self._commands.read()) is not None:
+                assert isinstance(command, Command)
+                self.taken.append(command)
+                self.status.status = self._answer(command, self.status)
+                self.status.echo_serial_number = command.serial_number
+                self.publish()
+
+    def __enter__(self) -> FakeTask:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._over.set()
+        self._thread.join()
+        for channel in (self._commands, self._statuses, self.errors):
+            channel.close()
