@@ -27,16 +27,16 @@ class Session:
 
     def __init__(self, server: Server) -> None:
         self.server = server
-        self.linked = False
-        self.echo = True
-        self.verbose = False
-        self.fresh = True
-        self.comm_mode = "ASCII"
-        self.protocol = "1.0"
-        self.set_wait = "RECEIVED"
-        self.timeout = 0.0  # s, 0: forever
-        self.linear_conversion = "AUTO"
-        self.angular_conversion = "AUTO"
+        self.linked: bool = False
+        self.echo: bool = True
+        self.verbose: bool = False
+        self.fresh: bool = True
+        self.comm_mode: str = "ASCII"
+        self.protocol: str = "1.0"
+        self.set_wait: str = "RECEIVED"
+        self.timeout: float = 0.0  # s, 0: forever
+        self.linear_conversion: str = "AUTO"
+        self.angular_conversion: str = "AUTO"
         self.closing = False
         self.command = linuxcnc.command()
         self._status = linuxcnc.stat()

@@ -107,6 +107,11 @@ def _jog_incr(command: linuxcnc.command, words: list[str]) -> None:
     command.jog(linuxcnc.JOG_INCREMENT, *_jog_target(words), _real(words, 1) / 60.0, _real(words, 2))
 
 
+def _override_limits(command: linuxcnc.command, words: list[str]) -> None:
+    if _choice(words, ON_OFF):
+        command.override_limits()
+
+
 def _spindle(command: linuxcnc.command, words: list[str]) -> None:
     name = _word(words).upper()
     number = _integer(words, 1, 0)
@@ -235,7 +240,7 @@ SETTERS: dict[str, Setter] = FREE | {
     "MODE": _command(lambda c, words: c.mode(_choice(words, MODES))),
     "OPEN": _command(_open),
     "OPTIONAL_STOP": _command(lambda c, words: c.set_optional_stop(_integer(words, 0, 0))),
-    "OVERRIDE_LIMITS": _command(lambda c, words: _choice(words, ON_OFF) and c.override_limits()),
+    "OVERRIDE_LIMITS": _command(_override_limits),
     "PAUSE": _command(lambda c, words: c.auto(linuxcnc.AUTO_PAUSE)),
     "PROBE": _command(_probe),
     "PROBE_CLEAR": lambda session, words: None,

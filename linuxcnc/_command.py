@@ -83,7 +83,7 @@ class command:
         deadline = clock.host_now() + timeout
         while True:
             status = self._status.peek()
-            if status is not None:
+            if isinstance(status, emc.EMC_STAT):
                 self._echo, self._result = status.echo_serial_number, status.status
             ahead = self._echo - self.serial
             if ahead > 0 or (ahead == 0 and (received or self._result != const.RCS_EXEC)):

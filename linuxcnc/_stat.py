@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import islice
 from operator import attrgetter
-from typing import Any, Generic, NamedTuple, TypeVar, overload
+from typing import Any, Generic, NamedTuple, TypeVar, cast, overload
 
 from linuxcnc._connection import open_channel, pose_tuple
 from nml.channel import Channel
@@ -38,7 +38,7 @@ class tool_result(NamedTuple):
     orientation: int
 
 
-NO_TOOL = tool_result(-1, *[0.0] * 12, 0)
+NO_TOOL = tool_result._make((-1, *[0.0] * 12, 0))
 
 JOINT_KEYS = {
     "jointType": "jointType",
@@ -250,7 +250,7 @@ class stat:
         self._tools: Channel | None = None
         self._tool_table: tuple[tool_result, ...] = (NO_TOOL,)
         self._message = EMC_STAT()
-        self._data = self._message.data
+        self._data = cast(bytearray, self._message.data)
         self._poll_into = self._channel.poll_into
         self.poll()
 
@@ -268,7 +268,7 @@ class stat:
         if self._tools is None:
             self._tools = open_channel("toolTable")
         table = self._tools.peek()
-        if table is not None:
+        if isinstance(table, EMC_TOOL_TABLE):
             self._tool_table = _tool_table(table)
         return self._tool_table
 
@@ -285,8 +285,8 @@ def _tool_table(message: EMC_TOOL_TABLE) -> tuple[tool_result, ...]:
     """The tools of io's table up to the last used place; index 0 is the spindle."""
     return tuple(
         [
-            tool_result(
-                one.toolno, *pose_tuple(one.offset), one.diameter, one.frontangle, one.backangle, one.orientation
+            tool_result._make(
+                (one.toolno, *pose_tuple(one.offset), one.diameter, one.frontangle, one.backangle, one.orientation)
             )
             for one in islice(message.tools, message.last_index + 1)
         ]

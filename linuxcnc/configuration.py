@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import nml
+from hal.session import find_hal_file
 from nml import clock, namespace
 from nml.errors import ConfigError, Place
 from nml.inifile import IniFile
@@ -39,7 +40,6 @@ class Configuration:
         self.ini.find("TRAJ", "COORDINATES")
         self.nml_file = self._nml_file()
         self.hal_files = self._hal_files()
-        self.hal_commands = self.ini.findall("HAL", "HALCMD")
         self.task = self._command("TASK", "TASK", "milltask")
         self.io = self._command("EMCIO", "EMCIO", "io")
         self.halui = self._command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
@@ -90,13 +90,10 @@ class Configuration:
         place = self.ini.place("HAL", "HALFILE", number)
         if len(words) != 1:
             raise ConfigError(f"[HAL]HALFILE = {name}: one file name is allowed", place)
-        library_name = words[0].removeprefix("LIB:")
-        folders = (HALLIB,) if library_name != words[0] else (self.folder, HALLIB)
-        for folder in folders:
-            path = folder / library_name
-            if path.is_file():
-                return path
-        raise ConfigError(f"[HAL]HALFILE = {name}: there is no such file in {' or '.join(map(str, folders))}", place)
+        path = find_hal_file(words[0], [self.folder])
+        if path is None:
+            raise ConfigError(f"[HAL]HALFILE = {name}: no such file in {self.folder} or the HAL library", place)
+        return path
 
     def environment(self) -> dict[str, str]:
         """The environment of every process of this machine."""

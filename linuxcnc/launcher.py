@@ -12,8 +12,12 @@ import signal
 import sys
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from nml import clock, namespace
+
+if TYPE_CHECKING:
+    from linuxcnc.machine import Machine
 
 POLL = 0.05  # host seconds between looks at the processes
 
@@ -92,7 +96,7 @@ def _readable(path: Path) -> None:
         raise ConfigError(f"the program cannot be read: {reason.strerror}", Place(str(path))) from reason
 
 
-def _follow_display(machine: "Machine") -> int:  # noqa: F821, UP037  imported where it is used, for a quick start
+def _follow_display(machine: Machine) -> int:
     """Stay up as long as the display and all other processes live."""
     display = machine.start_display()
     while display.process.poll() is None:

@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal._shm import USER
-from hal.client import HostClient
-from hal.core import Hal
 from linuxcnc import takedown
 from linuxcnc.configuration import Configuration
 from linuxcnc.guard import Guard
-from linuxcnc.halsetup import run_hal_files
+from linuxcnc.halsetup import SetupSession, set_up
 from linuxcnc.instance import Instance, ProcessRecord
 from nml import clock
 from nml.channel import Channel
@@ -61,8 +59,7 @@ class Machine:
         for record in self._instance.remove_leftovers():
             report(f"ended {record.name} (process {record.pid}) of an earlier run that was killed")
         self._guard = Guard(self._instance, self._nml_file)
-        self._hal = Hal()
-        self._host = HostClient(self._hal)
+        self._session = SetupSession(configuration.ini)
         self._host_record: ProcessRecord | None = None
 
     def __enter__(self) -> Machine:
@@ -76,7 +73,7 @@ class Machine:
     def start(self) -> None:
         """Start everything but the display and wait until task is ready."""
         configuration = self.configuration
-        self._host.start()
+        self._session.host.start()
         self._spawn("io", configuration.io)
         self._spawn("task", configuration.task)
         self.wait_until(self._host_runs, "the realtime host")
@@ -84,7 +81,7 @@ class Machine:
         if configuration.halui is not None:
             self._spawn("halui", configuration.halui)
             self.wait_until(self._component_ready("halui"), "halui")
-        run_hal_files(configuration)
+        set_up(self._session, configuration.ini, configuration.folder, configuration.hal_files)
         self._record_user_components()
         status = Channel(self._nml_file, "emcStatus", "xemc")
         self.wait_until(lambda: status.peek() is not None, "task")
@@ -113,7 +110,7 @@ class Machine:
 
     def _host_runs(self) -> bool:
         """Whether the realtime host has registered; then it is watched as the others are."""
-        pid, alive = self._hal.host_state()
+        pid, alive = self._session.hal.host_state()
         if alive and self._host_record is None:
             self._host_record = ProcessRecord.of(pid, "host")
             self._instance.add(self._host_record)
@@ -121,7 +118,7 @@ class Machine:
 
     def _component_ready(self, name: str) -> Callable[[], bool]:
         def ready() -> bool:
-            component = self._hal.segment.find_comp(name)
+            component = self._session.hal.segment.find_comp(name)
             return component is not None and component.ready
 
         return ready
@@ -129,7 +126,7 @@ class Machine:
     def _record_user_components(self) -> None:
         """Programs that HAL files started belong to the machine and end with it."""
         known = {child.process.pid for child in self.children} | {os.getpid()}
-        for component in self._hal.segment.comps():
+        for component in self._session.hal.segment.comps():
             if component.kind == USER and component.pid not in known:
                 known.add(component.pid)
                 self._instance.add(ProcessRecord.of(component.pid, component.name))
@@ -174,8 +171,7 @@ class Machine:
             self.report(f"{record.name} (process {record.pid}) did not end and was killed")
         for child in self.children:
             child.process.wait()
-        self._host.close()
-        self._hal.close()
+        self._session.close()
         self._guard.dismiss()
         self._instance.release()
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import linuxcnc
 from nml import clock
 from nml.channel import Channel
+from nml.emc.emcmot import EMCMOT_STATUS
 from nml.errors import PyemcError
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ def run_program(machine: Machine, path: Path) -> None:
 def _distance(motion: Channel) -> float:
     """Length of path that the controlled point has travelled since motion was loaded, in machine units."""
     status = motion.peek()
-    return status.distance_travelled if status is not None else 0.0
+    return status.distance_travelled if isinstance(status, EMCMOT_STATUS) else 0.0
 
 
 def _count_lines(path: Path) -> int:

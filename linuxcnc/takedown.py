@@ -49,7 +49,7 @@ def _through_task(nml_file: str | None) -> tuple[Callable[[], None], Callable[[]
         deadline = clock.host_now() + REACTION_TIMEOUT
         while clock.host_now() < deadline:
             message = status.peek()
-            if message is not None and message.task.state != EMC_TASK_STATE_ENUM.ON:
+            if isinstance(message, emc.EMC_STAT) and message.task.state != EMC_TASK_STATE_ENUM.ON:
                 return
             status.wait(deadline - clock.host_now())
 

@@ -1,0 +1,40 @@
+"""The HAL files and commands of an INI file, executed by the launcher itself; the first mistake ends the start."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from hal.session import Quit, Session
+from nml.errors import Place, PyemcError
+from nml.inifile import IniFile
+
+
+class HalFileError(PyemcError):
+    """A line of a HAL file failed: ``file:line: message``."""
+
+
+class SetupSession(Session):
+    """A HAL session whose first error ends it."""
+
+    def report(self, error: Exception) -> None:
+        raise HalFileError(f"{self.place}: {error}")
+
+
+def set_up(session: Session, ini: IniFile, folder: Path, files: list[Path]) -> None:
+    """Run [HAL]HALFILE in order, then [HAL]HALCMD, then start the threads; relative names start at the INI file."""
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        for path in files:
+            try:
+                session.run_file(path)
+            except Quit:
+                continue
+        for number, line in enumerate(ini.findall("HAL", "HALCMD"), 1):
+            session.place = ini.place("HAL", "HALCMD", number)
+            session.run_line(line)
+        session.place = Place("<start>")
+        session.run_line("start")
+    finally:
+        os.chdir(before)
