@@ -23,6 +23,7 @@ cdef enum:
 
 cdef double NO_WAY = 1e-13       # u
 cdef double SAME_SPEED = 1e-12   # relative
+cdef double HARDEST = 1.0 + 1e-8 # times the limit: braking onto a point, to within rounding
 
 ctypedef struct Phase:
     double acceleration      # d2u/dt2
@@ -180,7 +181,7 @@ cdef Phase _line_phase(const TpState* tp, const Span* span) noexcept nogil:
         phase.acceleration = -a
         phase.way = fmin(x, (tp.w - target) / (2.0 * a))
     elif tp.w >= braking * (1.0 - SAME_SPEED):
-        phase.acceleration = fmin(0.0, (limit - tp.w) / (2.0 * x))
+        phase.acceleration = fmax(-HARDEST * a, fmin(0.0, (limit - tp.w) / (2.0 * x)))
         phase.way = x
     elif tp.w < target * (1.0 - SAME_SPEED):
         phase.acceleration = a

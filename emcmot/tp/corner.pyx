@@ -9,7 +9,7 @@ segments in its middle: for lines by d |r t2 - t1| / 4.
 
 from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 
-from emcmot.tp.geometry cimport derivatives, norm, position
+from emcmot.tp.geometry cimport derivatives, position
 from emcmot.tp.model cimport AXES, Segment, TpState
 from emcmot.tp.tp cimport TP_ARC, TP_TERM_BLEND, TP_TERM_STOP
 
@@ -26,9 +26,13 @@ cdef double ARC_BLEND_ANGLE = 0.5    # rad of an arc that a blend may take
 cdef double SLIGHT = 0.1             # corners below this difference of tangents cost next to no deviation
 
 
-cdef double _largest(const double* v) noexcept nogil:
-    """Largest length of a vector in any of the three groups of axes."""
-    return fmax(norm(v, 0), fmax(norm(v, 1), norm(v, 2)))
+cdef double _length(const double* v) noexcept nogil:
+    """Length over all nine axes, a degree counting as one length unit."""
+    cdef double square = 0.0
+    cdef int i
+    for i in range(AXES):
+        square += v[i] * v[i]
+    return sqrt(square)
 
 
 cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b, double room) noexcept nogil:
@@ -46,7 +50,7 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     corner.trim = 0.0
     for i in range(AXES):
         jump[i] = corner.ratio * t2[i] - t1[i]
-    sharpness = _largest(jump)
+    sharpness = _length(jump)
     corner.stop = sharpness > TANGENT
     if a.term == TP_TERM_STOP or a.motion_type >= MOTION_TOOL_CHANGE or b.motion_type >= MOTION_TOOL_CHANGE:
         corner.stop = 1
@@ -134,7 +138,7 @@ cdef double _deviation(const Segment* b, double s2, double* q) noexcept nogil:
     position(b, s2, p)
     for i in range(AXES):
         q[i] += p[i]
-    return _largest(q)
+    return _length(q)
 
 
 cdef int blend_spans(const Segment* a, const Segment* b, const Corner* corner) noexcept nogil:

@@ -14,6 +14,7 @@ from emcmot.tp.model cimport SPAN_LINE, Span
 cdef enum:
     MAX_ROWS = 20                # two for each axis, and the segment's own limit of d2u/dt2
 
+cdef double ROUNDING = 1.0 + 1e-9
 cdef double FLAT = 1e-9          # relative weight of w0 below which a row limits w1 only
 
 ctypedef struct Bounds:          # of w0 at one w1: low <= w0 <= high, and how they change with w1
@@ -127,12 +128,12 @@ cdef double _peak(const Rows* rows, double cap, Bounds left, double left_w1, Bou
 
 
 cdef inline void _allow(double factor, double offset, double a, double* low, double* high) noexcept nogil:
-    """Narrow [low, high] to the x with |factor x + offset| <= a."""
+    """Narrow [low, high] to the x with |factor x + offset| <= a, to within rounding."""
     cdef double middle, half
     if factor == 0.0:
         return
     middle = -offset / factor
-    half = fabs(a / factor)
+    half = fabs(a * ROUNDING / factor)
     if middle - half > low[0]:
         low[0] = middle - half
     if middle + half < high[0]:
@@ -152,8 +153,8 @@ cdef void acceleration_range(
         ddq = span.ddq0[j] + t * (span.ddq1[j] - span.ddq0[j])
         _allow(dq, ddq * w, a, low, high)
         _allow(span.dq1[j] + 2.0 * x * span.ddq1[j], span.ddq1[j] * w, a, low, high)
-    if low[0] > high[0]:                                  # by rounding only
-        low[0] = high[0] = 0.5 * (low[0] + high[0])
+    if low[0] > high[0]:                                  # by rounding or interpolation: break every limit least
+        low[0] = high[0] = fmax(high[0], fmin(low[0], 0.0))
 
 
 cdef double hardest_stop(const Span* span, const double* amax, double u, double w) noexcept nogil:

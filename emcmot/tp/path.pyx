@@ -23,6 +23,7 @@ cdef enum:
 
 cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
 cdef double ARC_SPAN_ANGLE = 0.04
+cdef double ARC_BLEND_TIGHT = 0.985  # of blends with arcs, whose derivatives are not quite linear in u
 
 
 cdef inline Span* _span(const TpState* tp, int64_t index) noexcept nogil:
@@ -319,6 +320,15 @@ cdef void _limit_speed(
     span.cap = v * v
 
 
+cdef double _strongest_axis(const TpState* tp, const Span* span) noexcept nogil:
+    """Limit of d2u/dt2 in blends with arcs: where dq/du nearly vanishes its interpolation bears no more."""
+    cdef double a = 0.0
+    cdef int j
+    for j in range(span.n):
+        a = fmax(a, tp.amax[span.axis[j]])
+    return a
+
+
 cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
     """Spans of the corner between segments `index - 1` and `index`."""
     cdef Segment* a = _seg(tp, index - 1)
@@ -341,9 +351,11 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
         blend_derivatives(a, b, &corner, (k + 1) * h, dq[then], ddq[then])
         span.trim = corner.trim
         if a.kind == TP_ARC or b.kind == TP_ARC:
-            span.tight = 0.985
+            span.tight = ARC_BLEND_TIGHT
         _limit_speed(tp, span, dq[now], dq[then], b.vel_max, b.unit)
         span.speed_before = fmax(norm(dq[now], a.unit), norm(dq[then], a.unit))
         span.cap = fmin(span.cap, (a.vel_max / span.speed_before) ** 2)
         _keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
+        if span.tight < 1.0:
+            span.acc = _strongest_axis(tp, span)
     span.ratio = corner.ratio
