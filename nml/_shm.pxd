@@ -73,7 +73,7 @@ cdef class Buffer:
     cdef readonly str name
     cdef bint closed
     cdef int sleeping
-    cdef uint64_t last
+    cdef readonly uint64_t last     # number of the message that this channel has read or peeked last
     cdef uint64_t cursor_id
     cdef uint64_t cursor_at
     cdef bint shared

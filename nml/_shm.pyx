@@ -570,6 +570,10 @@ cdef class Buffer:
             return number > self.head.shared_id
         return number > self.cursor_id
 
+    def mark_read(self) -> None:
+        """Single slot: let the newest message count as read."""
+        nml_store_max(&self.head.seen, nml_load(&self.head.write_counter))
+
     def was_read(self) -> bool:
         """Whether somebody has read the newest message (queue: all of them)."""
         if self.head.kind == KIND_QUEUE:

@@ -9,9 +9,11 @@ Every process of a controller, and every client, talks through channels; what li
 
 from __future__ import annotations
 
+import importlib
 import mmap
 import os
 import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -61,32 +63,39 @@ class Channel:
     ``config`` is a parsed NML file, a path, or None for the controller's own (``NmlConfig.load``).
     """
 
-    def __init__(self, config: Configuration = None, buffer: str = "", process: str = "xemc") -> None:
+    line: BufferLine
+    process: ProcessLine
+    _let_go: Callable[[], object]
+
+    def __new__(cls, config: Configuration = None, buffer: str = "", process: str = "xemc") -> Channel:
         parsed = config if isinstance(config, NmlConfig) else NmlConfig.load(config)
-        self._open(parsed.buffer(buffer), parsed.process(process, buffer))
+        return cls.connect(parsed.buffer(buffer), parsed.process(process, buffer))
 
     @classmethod
-    def connect(cls, buffer: BufferLine, process: ProcessLine) -> Channel:
-        """A channel for two lines that need not stand in a file."""
-        self = cls.__new__(cls)
-        self._open(buffer, process)
+    def connect(cls, line: BufferLine, process: ProcessLine) -> Channel:
+        """A channel for two lines that need not stand in a file; a remote one (``nml.net``) where they say so."""
+        if process.type is ProcessType.REMOTE or (process.type is ProcessType.AUTO and not is_this_host(line.host)):
+            cls = importlib.import_module("nml.net.remote").RemoteChannel
+        self: Channel = object.__new__(cls)
+        self.line = line
+        self.process = process
+        self._open(line, process)
         return self
 
     def _open(self, line: BufferLine, process: ProcessLine) -> None:
-        self.line = line
-        self.process = process
-        if process.type is ProcessType.REMOTE or (process.type is ProcessType.AUTO and not is_this_host(line.host)):
-            message = f"process {process.process} reaches buffer {line.name} over the network; a Channel is local"
-            raise ConfigError(message, process.place)
         if process.c_num >= line.max_procs:
             message = f"c_num {process.c_num} of {process.process}; buffer {line.name} has max_procs {line.max_procs}"
             raise ConfigError(message, process.place)
-        self._serial = line.serial
         self._memory = _memory(line)
-        self._close = weakref.finalize(self, self._memory.close)
+        self._let_go = weakref.finalize(self, self._memory.close)
+        self._attach()
+
+    def _attach(self) -> None:
+        line, process = self.line, self.process
         assert self._memory.map is not None
         BufferLayout(line).check(self._memory.map)
-        self._buffer = _shm.Buffer(
+        self._serial = line.serial
+        self.raw = _shm.Buffer(
             self._memory.map,
             timeout=process.timeout,
             lock_writes=line.mutex is not Mutex.NONE,
@@ -94,8 +103,9 @@ class Channel:
             c_num=process.c_num if line.diag else -1,
             process=process.process,
         )
+        """The buffer itself: bytes instead of messages."""
         if process.may_read:
-            self.poll_into = self._buffer.poll_into
+            self.poll_into = self.raw.poll_into
             """``poll_into(bytearray) -> bool``: copy a new single-slot message; False, and quick, if there is none."""
 
     @property
@@ -106,17 +116,17 @@ class Channel:
     @property
     def address(self) -> int:
         """The buffer's head as a ``void*``, for the C functions of ``nml/_shm.pxd``."""
-        return self._buffer.address
+        return self.raw.address
 
     @property
     def write_counter(self) -> int:
         """Messages ever written to the buffer."""
-        return self._buffer.write_counter
+        return self.raw.write_counter
 
     @property
     def missed(self) -> int:
         """Broadcast queue: messages that were dropped before this reader came to them."""
-        return self._buffer.missed
+        return self.raw.missed
 
     @property
     def orphaned(self) -> bool:
@@ -130,26 +140,26 @@ class Channel:
         """
         if not self.process.may_write:
             raise self._not_allowed("write")
-        return self._buffer.write(message.data, self._serial and isinstance(message, Command))
+        return self.raw.write(message.data, self._serial and isinstance(message, Command))
 
     def write_if_read(self, message: Message) -> int:
         """As ``write``, but only if the last message was read; 0 if it was not."""
         if not self.process.may_write:
             raise self._not_allowed("write")
-        return self._buffer.write(message.data, self._serial and isinstance(message, Command), only_if_read=True)
+        return self.raw.write(message.data, self._serial and isinstance(message, Command), only_if_read=True)
 
     def read(self) -> Message | None:
         """The next message, taken from a queue; None: nothing new since this channel's last read or peek."""
         if not self.process.may_read:
             raise self._not_allowed("read")
-        data = self._buffer.read()
+        data = self.raw.read()
         return None if data is None else decode(data)
 
     def peek(self) -> Message | None:
         """As ``read``, but leaves the message to others: a queue keeps it, a single slot does not count as read."""
         if not self.process.may_read:
             raise self._not_allowed("read")
-        data = self._buffer.peek()
+        data = self.raw.peek()
         return None if data is None else decode(data)
 
     def blocking_read(self, timeout: float = -1.0) -> Message | None:
@@ -157,46 +167,56 @@ class Channel:
         if self.line.bsem == -1:
             raise BufferError_(f"buffer {self.name}: bsem=-1 in the NML file forbids blocking reads")
         message = self.read()
-        while message is None and self._buffer.wait(timeout):
+        while message is None and self.raw.wait(timeout):
             message = self.read()
         return message
 
     def wait(self, timeout: float) -> bool:
         """Sleep until there is something to read, at most ``timeout`` s of host time (negative: for ever)."""
-        return self._buffer.wait(timeout)
+        return self.raw.wait(timeout)
 
     def has_news(self) -> bool:
         """Whether ``read`` would return a message."""
-        return self._buffer.has_news()
+        return self.raw.has_news()
 
     def check_if_read(self) -> bool:
         """Whether the last message was read (queue: all of them)."""
-        return self._buffer.was_read()
+        return self.raw.was_read()
 
     def queue_length(self) -> int:
         """Messages that wait in the queue for this reader; 0 for a single slot."""
-        return self._buffer.queue_length()
+        return self.raw.queue_length()
 
     def space(self) -> int:
         """Length in bytes of the longest message that could be written now."""
-        return self._buffer.space()
+        return self.raw.space()
 
     def age(self) -> float | None:
         """Seconds of host time since the message in a single slot was written; None if there is none."""
-        return self._buffer.age()
+        return self.raw.age()
 
     def clear(self) -> None:
         """Forget every message. Numbers go on, so nobody takes a later message for an old one."""
-        self._buffer.clear()
+        self.raw.clear()
 
     def diagnostics(self) -> list[dict[str, object]]:
         """What each process did with a buffer declared ``diag``: counts, bytes, times."""
-        return self._buffer.diagnostics()
+        return self.raw.diagnostics()
 
     def close(self) -> None:
         """Let go of the buffer; its last user removes the segment."""
-        self._buffer.close()
-        self._close()
+        self.raw.close()
+        self._let_go()
+
+    def reader(self) -> Channel:
+        """Another channel in this channel's memory, with a cursor of its own in a broadcast queue; close it first."""
+        other: Channel = object.__new__(type(self))
+        other.line = self.line
+        other.process = self.process
+        other._memory = self._memory
+        other._let_go = lambda: None
+        other._attach()
+        return other
 
     def __enter__(self) -> Channel:
         return self

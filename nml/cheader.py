@@ -31,7 +31,7 @@ def pxd(module: ModuleType) -> str:
             parts.append(_enum((f"{cls.__name__}_{name}", int(m.value)) for name, m in cls.__members__.items()))
     messages = [cls for cls in own if issubclass(cls, Message)]
     parts.append(_enum((f"{cls.__name__}_TYPE", cls.TYPE_ID) for cls in messages))
-    parts.extend(_struct(cls) for cls in _in_order(cls for cls in own if issubclass(cls, Struct)))
+    parts.extend(_struct(cls) for cls in own_structs(module))
     return "\n".join(parts)
 
 
@@ -42,8 +42,8 @@ def write_pxd(module: ModuleType, path: Path) -> None:
         path.write_text(text)
 
 
-def _in_order(classes: Iterable[type[Struct]]) -> list[type[Struct]]:
-    """``classes`` and whatever they contain, each after what it contains."""
+def own_structs(module: ModuleType) -> list[type[Struct]]:
+    """The structures that ``module`` defines and whatever they contain, each after what it contains."""
     ordered: list[type[Struct]] = []
 
     def visit(cls: type[Struct]) -> None:
@@ -53,8 +53,9 @@ def _in_order(classes: Iterable[type[Struct]]) -> list[type[Struct]]:
         if cls not in ordered:
             ordered.append(cls)
 
-    for cls in classes:
-        visit(cls)
+    for value in vars(module).values():
+        if isinstance(value, type) and issubclass(value, Struct) and value.__module__ == module.__name__:
+            visit(value)
     return ordered
 
 

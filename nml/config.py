@@ -14,7 +14,7 @@ import os
 import re
 import socket
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -85,6 +85,7 @@ class BufferLine:
     udp: int | None = None
     stcp: int | None = None
     serial_port: str | None = None
+    baud: int = 115200
     passwd: str | None = None
     bsem: int | None = None
     subdivisions: int = 1
@@ -219,6 +220,7 @@ _BUFFER_VALUES: dict[str, tuple[str, _Kind]] = {
     "UDP": ("udp", _PORT),
     "STCP": ("stcp", _PORT),
     "serialPortDevName": ("serial_port", _TEXT),
+    "baud": ("baud", _whole(50, 4_000_000)),
     "passwd": ("passwd", _TEXT),
     "bsem": ("bsem", _INT),
     "subdiv": ("subdivisions", _whole(1, 100)),
@@ -255,18 +257,34 @@ class NmlConfig:
     @classmethod
     def load(cls, path: str | os.PathLike[str] | None = None) -> NmlConfig:
         """The configuration of this controller: ``path``, or the environment's NML_FILE, or [EMC]NML_FILE of the
-        INI file that INI_FILE_NAME names, or the packaged file; with our own buffers added where it lacks them."""
+        INI file that INI_FILE_NAME names, or the packaged file; with what a stock file lacks (``complete``)."""
         config = cls(path or _default_path())
         if config.path != DEFAULT_FILE:
-            config.add_missing(cls(DEFAULT_FILE))
+            config.complete(cls(DEFAULT_FILE))
         return config
 
-    def add_missing(self, other: NmlConfig) -> None:
-        """Take over the buffers that this file does not have, with their processes."""
-        missing = {line.name for line in other.buffer_lines} - {line.name for line in self.buffer_lines}
-        own = missing & OWN_BUFFERS
-        self.buffer_lines += [line for line in other.buffer_lines if line.name in own]
-        self.process_lines += [line for line in other.process_lines if line.buffer in own]
+    def complete(self, packaged: NmlConfig) -> None:
+        """Add our own buffers where the file lacks them, and let operator messages reach every reader.
+
+        They go the way of emcStatus: same host and port, and for each process the same kind of line.
+        """
+        self.buffer_lines = [
+            replace(line, broadcast=True) if line.name in BROADCAST_BUFFERS and line.queue else line
+            for line in self.buffer_lines
+        ]
+        present = {line.name for line in self.buffer_lines}
+        guide = next((line for line in self.buffer_lines if line.name == "emcStatus"), None)
+        ways = {line.process: line for line in self.process_lines if line.buffer == "emcStatus"}
+        for line in packaged.buffer_lines:
+            if line.name in OWN_BUFFERS - present:
+                if guide is not None:
+                    line = replace(line, host=guide.host, tcp=guide.tcp if line.tcp else None)
+                self.buffer_lines.append(line)
+        for user in packaged.process_lines:
+            if user.buffer in OWN_BUFFERS - present:
+                if way := ways.get(user.process):
+                    user = replace(user, type=way.type, host=way.host, timeout=way.timeout)
+                self.process_lines.append(user)
 
     def buffer(self, name: str) -> BufferLine:
         """The B line of a buffer."""
@@ -368,6 +386,9 @@ def is_this_host(host: str) -> bool:
     """Whether a B line's host is where this process runs (what AUTO asks)."""
     return host.startswith(("localhost", "127.")) or host in (socket.gethostname(), socket.getfqdn())
 
+
+BROADCAST_BUFFERS = frozenset({"emcError"})
+"""Queues in which every reader gets every message, also in a stock file; ``shared`` in a P line is stock behaviour."""
 
 OWN_BUFFERS = frozenset({"emcmotCommand", "emcmotStatus", "emcmotError", "toolTable"})
 """Buffers that LinuxCNC does not have; added to every NML file."""

@@ -100,6 +100,7 @@ class MotCommand(IntEnum):
     SET_SPINDLE_PARAMS = 74
     SET_HEARTBEAT_TIMEOUT = 100  # ours: `timeout` s without a command or HEARTBEAT from task stops the machine; 0: off
     HEARTBEAT = 101  # ours: task is alive; does nothing else
+    SET_UNITS = 102  # ours: `scale` millimetres are one lu; for the pins motion.feed-mm-per-minute and their like
 
 
 class MotCommandStatus(IntEnum):
