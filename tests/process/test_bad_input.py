@@ -1,0 +1,111 @@
+"""What a person got wrong is said in one line with its place, the exit code is not 0, and nothing is left running."""
+
+import re
+
+import pytest
+
+from tests.support.machine import Run, copy_mill, traces
+
+pytestmark = pytest.mark.process
+
+
+def fails(ini, *options, speed=20.0) -> str:
+    """The one line that the launcher says when it fails."""
+    run = Run(ini, *options, speed=speed)
+    assert run.finish() != 0
+    assert traces() == []
+    (line,) = run.errors.strip().splitlines()
+    return line
+
+
+def program(folder, text):
+    part = folder / "part.ngc"
+    part.write_text(text)
+    return "--run", str(part)
+
+
+def test_a_missing_ini_file(tmp_path):
+    assert fails(tmp_path / "none.ini").startswith(f"{tmp_path}/none.ini: ")
+
+
+def test_an_unreadable_ini_file(tmp_path):
+    folder = tmp_path / "folder.ini"
+    folder.mkdir()
+    assert fails(folder).startswith(f"{folder}: ")
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [
+        ("KINS.JOINTS", "three"),
+        ("KINS.JOINTS", "99"),
+        ("HAL.HALFILE", "none.hal"),
+        ("TASK.TASK", "notask"),
+        ("DISPLAY.DISPLAY", "nodisplay"),
+        ("TRAJ.LINEAR_UNITS", "furlong"),
+        ("TRAJ.COORDINATES", "X Q"),
+        ("JOINT_0.TYPE", "SQUARE"),
+        ("JOINT_0.MAX_VELOCITY", "fast"),
+    ],
+)
+def test_an_ini_value_that_cannot_be(tmp_path, entry, value):
+    line = fails(copy_mill(tmp_path, changes={entry: value}))
+    assert re.match(rf"{tmp_path}/mill_mm.ini:\d+: ", line), line
+    assert entry.partition(".")[2] in line
+
+
+def test_a_missing_nml_file(tmp_path):
+    ini = copy_mill(tmp_path)
+    ini.write_text(ini.read_text().replace("[EMC]", "[EMC]\nNML_FILE = none.nml"))
+    assert re.match(rf"{ini}:\d+: .*none\.nml", fails(ini))
+
+
+def test_a_broken_nml_file(tmp_path):
+    ini = copy_mill(tmp_path)
+    ini.write_text(ini.read_text().replace("[EMC]", "[EMC]\nNML_FILE = bad.nml"))
+    (tmp_path / "bad.nml").write_text("# buffers\nB emcCommand SHMEM localhost many 0 0 1 16 1001\n")
+    assert fails(ini).startswith(f"{tmp_path}/bad.nml:2:")
+
+
+@pytest.mark.parametrize("line", ["loadrt nosuchmodule", "addf nothing servo-thread", "net a joint.0.none", "bogus"])
+def test_a_wrong_line_in_a_hal_file(tmp_path, line):
+    ini = copy_mill(tmp_path, hal=f"# comment\n{line}\n")
+    assert fails(ini).startswith(f"{tmp_path}/test.hal:2: ")
+
+
+def test_a_missing_program(tmp_path):
+    assert fails(copy_mill(tmp_path), "--run", str(tmp_path / "none.ngc")).startswith(f"{tmp_path}/none.ngc: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [("G21\nG1 X1 F100\nG1 X[1/0]\nM2\n", 3), ("G21 G1 X1\nM2\n", 1), ("G21\nG77777\nM2\n", 2), ("G1 XQ F100\n", 1)],
+)
+def test_a_wrong_program(tmp_path, text, number):
+    line = fails(copy_mill(tmp_path), *program(tmp_path, text))
+    assert line.startswith(f"{tmp_path}/part.ngc:{number}"), line
+
+
+def test_a_program_that_leaves_the_machine(tmp_path):
+    line = fails(copy_mill(tmp_path), *program(tmp_path, "G21 G90\nG1 X10 F3000\nG1 X5000\nM2\n"))
+    assert "limit" in line
+    assert "300" in line
+
+
+def test_a_namespace_that_is_in_use(tmp_path):
+    ini = copy_mill(tmp_path)
+    first = Run(ini, speed=20.0)
+    try:
+        first.port()
+        second = Run(ini, speed=20.0)
+        assert second.finish() != 0
+        assert "already running" in second.errors
+        assert first.process.poll() is None
+    finally:
+        assert first.stop() == 143
+    assert traces() == []
+
+
+@pytest.mark.parametrize(("option", "value"), [("--speed", "0"), ("--namespace", "a/b")])
+def test_an_option_that_cannot_be(tmp_path, option, value):
+    assert value.strip("0") in fails(copy_mill(tmp_path), option, value)

@@ -1,0 +1,128 @@
+"""A process is killed while the machine cuts: the rest notices and stops under its limits; a new start works at once."""
+
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+
+import linuxcnc
+from tests.process.test_running_programs import ACCELERATION, PERIOD, VELOCITY
+from tests.support import verify
+from tests.support.machine import Run, copy_mill, processes, running, traces, wait_until
+from tests.support.recorder import hal_text, recorded
+
+pytestmark = pytest.mark.process
+
+SPEED = 4.0
+PROGRAM = "G21 G90 G94 G64 P0.1\no1 while [1]\nG1 X100 Y50 F9000\nG1 X-100 Y-50\no1 endwhile\nM2\n"
+
+
+def cutting(samples_file) -> bool:
+    """Whether the recorded machine moves at more than 50 mm/s."""
+    samples = recorded(samples_file)
+    return len(samples) > 50 and np.linalg.norm(samples[-1] - samples[-2]) / PERIOD > 50.0
+
+
+@pytest.mark.parametrize("victim", ["task", "io", "launcher"])
+def test_when_a_process_dies_the_machine_stops_under_its_limits(tmp_path, victim):
+    data = tmp_path / "commands.bin"
+    ini = copy_mill(tmp_path, hal=hal_text(data))
+    part = tmp_path / "part.ngc"
+    part.write_text(PROGRAM)
+    with running(ini, "--run", str(part), speed=SPEED) as run:
+        wait_until(lambda: run.process.poll() is not None or (data.exists() and cutting(data)), "cutting")
+        assert run.process.poll() is None, run.errors
+        pid = run.process.pid if victim == "launcher" else run.pids()[victim]
+        before = len(recorded(data))
+        os.kill(pid, signal.SIGKILL)
+        wait_until(lambda: not processes(), "the end of all processes", 15.0)
+        code = run.finish()
+    samples = recorded(data)
+    assert len(samples) > before
+    assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
+    assert np.linalg.norm(samples[-1] - samples[-2]) == 0.0
+    assert code != 0
+    if victim != "launcher":
+        assert victim in run.errors
+        assert len(run.errors.strip().splitlines()) == 1, run.errors
+    assert traces() == []
+    second = Run(ini, "--run", str(_short(tmp_path)), speed=20.0)
+    assert second.finish() == 0, second.errors
+
+
+def test_when_the_realtime_host_dies_the_program_ends_with_an_error(tmp_path):
+    ini = copy_mill(tmp_path)
+    part = tmp_path / "part.ngc"
+    part.write_text(PROGRAM)
+    with running(ini, "--run", str(part), speed=SPEED) as run:
+        wait_until(lambda: run.process.poll() is not None or "host" in run.pids(), "the host")
+        status = linuxcnc.stat()
+        wait_until(lambda: status.poll() or status.current_vel > 50.0, "cutting")
+        os.kill(run.pids()["host"], signal.SIGKILL)
+        killed = time.monotonic()
+        assert run.finish() == 1
+    assert time.monotonic() - killed < 15.0
+    assert "realtime host" in run.errors
+    assert traces() == []
+    second = Run(ini, "--run", str(_short(tmp_path)), speed=20.0)
+    assert second.finish() == 0, second.errors
+
+
+def test_a_guard_that_dies_is_replaced(tmp_path):
+    ini = copy_mill(tmp_path)
+    with running(ini, speed=SPEED) as run:
+        run.port()
+        ours = {pid for pid, command in processes() if "linuxcnc.launcher" in command} - {run.process.pid}
+        (guard,) = ours
+        os.kill(guard, signal.SIGKILL)
+
+        def replaced() -> bool:
+            found = {pid for pid, command in processes() if "linuxcnc.launcher" in command}
+            return len(found - {run.process.pid, guard}) == 1
+
+        wait_until(replaced, "a new guard")
+        run.process.kill()
+        wait_until(lambda: not processes(), "the end of all processes", 15.0)
+    assert traces() == []
+
+
+def test_leftovers_of_a_run_whose_launcher_and_guard_were_killed_are_removed(tmp_path):
+    ini = copy_mill(tmp_path)
+    with running(ini, speed=SPEED) as run:
+        run.port()
+        launchers = [pid for pid, command in processes() if "linuxcnc.launcher" in command]
+        for pid in launchers:
+            os.kill(pid, signal.SIGSTOP)
+        for pid in launchers:
+            os.kill(pid, signal.SIGKILL)
+        run.finish()
+        assert processes()
+    second = Run(ini, "--run", str(_short(tmp_path)), speed=20.0)
+    assert second.finish() == 0, second.errors
+    assert "earlier run" in second.errors
+    assert traces() == []
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_to_the_launcher_stops_the_machine_under_its_limits(tmp_path, number, code):
+    data = tmp_path / "commands.bin"
+    ini = copy_mill(tmp_path, hal=hal_text(data))
+    part = tmp_path / "part.ngc"
+    part.write_text(PROGRAM)
+    with running(ini, "--run", str(part), speed=SPEED) as run:
+        wait_until(lambda: run.process.poll() is not None or (data.exists() and cutting(data)), "cutting")
+        run.process.send_signal(number)
+        assert run.finish() == code
+    samples = recorded(data)
+    assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
+    assert np.linalg.norm(samples[-1] - samples[-2]) == 0.0
+    assert run.errors.strip() == f"linuxcnc: stopped by {number.name}"
+    assert traces() == []
+
+
+def _short(folder):
+    part = folder / "short.ngc"
+    part.write_text("G21 G90 G94\nG1 X5 F3000\nM2\n")
+    return part
