@@ -1,0 +1,5 @@
+"""One servo period of motion."""
+
+from emcmot.state cimport Motion
+
+cdef void controller(Motion* m) noexcept nogil

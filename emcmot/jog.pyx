@@ -1,0 +1,212 @@
+"""Jogs of joints (free mode) and axes (teleop mode), by command and by wheel.
+
+A jog sets target and speed of a free planner; the planner does the rest. Targets are kept within the soft limits, so
+that every jog slows down in time. The command handler has checked mode and enable before it calls ``jog_joint`` or ``jog_axis``.
+"""
+
+from libc.math cimport fabs
+from libc.stdio cimport snprintf
+
+from emcmot._messages cimport Enables_FS, MAX_AXES, MotionState_FREE, MotionState_TELEOP
+from emcmot.free_planner cimport FreePlanner, free_planner_stop_point
+from emcmot.joint cimport jog_bounds
+from emcmot.report cimport TEXT_SIZE, report
+from emcmot.state cimport Axis, Joint, Motion
+from emcmot.world cimport AXIS_NAMES
+
+cdef double FAR = 1e6           # lu or deg: how far a jog without limits goes
+cdef double AT_LIMIT = 1e-9     # lu or deg: closer than this to a limit is on it
+
+
+cdef double within(double value, double low, double high) noexcept nogil:
+    return low if value < low else high if value > high else value
+
+
+cdef int aim(FreePlanner* p, int kind, double vel, double offset, double low, double high, int jogging) noexcept nogil:
+    """Set the target of a jog within ``low`` and ``high``; -1 where it is at that limit or beyond it already.
+
+    Increments add up: a second one counts from the target of the first.
+    """
+    cdef double origin = p.target if jogging and p.enabled else p.pos
+    cdef double target
+    if kind == JOG_CONTINUOUS:
+        target = high if vel > 0.0 else low
+    elif kind == JOG_INCREMENT:
+        target = origin + offset if vel > 0.0 else origin - offset
+    else:
+        target = offset
+        origin = p.pos
+    # outside of the limits only the way back is open
+    if target >= high or target <= low:
+        target = within(target, min(low, origin), max(high, origin))
+        if fabs(target - origin) <= AT_LIMIT:
+            return -1
+    p.target = target
+    p.enabled = 1
+    p.active = 1
+    return 0
+
+
+cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) noexcept nogil:
+    cdef Joint* joint = &m.joint[number]
+    cdef double low, high
+    cdef int up = (vel > 0.0) == (offset >= 0.0) if kind == JOG_INCREMENT else vel > 0.0
+    if kind == JOG_ABSOLUTE:
+        up = offset > joint.free.pos
+    if joint.home.sequence < 0:
+        snprintf(
+            report(m, number), TEXT_SIZE,
+            b"Can't jog joint %d alone: its HOME_SEQUENCE %d is negative, it moves with others", number, joint.home.sequence,
+        )
+        return -1
+    if not m.override_limits and (joint.on_pos_limit if up else joint.on_neg_limit):
+        snprintf(
+            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past its %s hard limit", number,
+            b"positive" if up else b"negative",
+        )
+        return -1
+    jog_bounds(joint, &low, &high)
+    low = within(low, joint.free.pos - FAR, 1e300)
+    high = within(high, -1e300, joint.free.pos + FAR)
+    if aim(&joint.free, kind, vel, offset, low, high, joint.kb_jog) != 0:
+        snprintf(
+            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past its %s soft limit: it is at %.4f, limit %.4f",
+            number, b"positive" if up else b"negative", joint.free.pos, high if up else low,
+        )
+        return -1
+    joint.jog_vel = fabs(vel)
+    joint.free.acc_limit = joint.acc_limit
+    joint.kb_jog = 1
+    joint.wheel_jog = 0
+    m.overriding_jog = m.override_limits != 0
+    return 0
+
+
+cdef int jog_axis(Motion* m, int number, int kind, double vel, double offset) noexcept nogil:
+    cdef Axis* axis = &m.axis[number]
+    cdef double low = within(axis.min_limit, axis.teleop.pos - FAR, 1e300)
+    cdef double high = within(axis.max_limit, -1e300, axis.teleop.pos + FAR)
+    cdef int up = (vel > 0.0) == (offset >= 0.0) if kind == JOG_INCREMENT else vel > 0.0
+    if kind == JOG_ABSOLUTE:
+        up = offset > axis.teleop.pos
+    if axis.vel_net <= 0.0 or axis.acc_net <= 0.0:
+        snprintf(report(m), TEXT_SIZE, b"Can't jog axis %c: this machine has none", AXIS_NAMES[number])
+        return -1
+    if aim(&axis.teleop, kind, vel, offset, low, high, axis.kb_jog) != 0:
+        snprintf(
+            report(m), TEXT_SIZE, b"Can't jog axis %c further past its %s soft limit: it is at %.4f, limit %.4f",
+            AXIS_NAMES[number], b"positive" if up else b"negative", axis.teleop.pos, high if up else low,
+        )
+        return -1
+    axis.jog_vel = fabs(vel)
+    axis.teleop.acc_limit = axis.acc_net
+    axis.kb_jog = 1
+    axis.wheel_jog = 0
+    return 0
+
+
+cdef void stop_joint_jog(Joint* joint) noexcept nogil:
+    joint.free.enabled = 0
+    joint.kb_jog = 0
+    joint.wheel_jog = 0
+
+
+cdef void stop_axis_jog(Axis* axis) noexcept nogil:
+    axis.teleop.enabled = 0
+    axis.kb_jog = 0
+    axis.wheel_jog = 0
+
+
+cdef void stop_jogs(Motion* m) noexcept nogil:
+    """Every jog comes to rest; homing moves go on."""
+    cdef int n
+    for n in range(m.num_joints):
+        if not m.joint[n].home.homing:
+            stop_joint_jog(&m.joint[n])
+    for n in range(MAX_AXES):
+        stop_axis_jog(&m.axis[n])
+
+
+cdef void turn(FreePlanner* p, double way, int velocity_mode, double low, double high, double dt) noexcept nogil:
+    """Move the target by what the wheel was turned; in velocity mode no further than where it can stop at once."""
+    cdef double lead
+    cdef double target = (p.target if p.enabled else free_planner_stop_point(p, dt)) + way
+    if velocity_mode:
+        lead = p.vel_limit * p.vel_limit / (2.0 * p.acc_limit)
+        target = within(target, p.pos - lead, p.pos + lead)
+    if target > high:
+        target = high if p.pos <= high else p.pos
+    elif target < low:
+        target = low if p.pos >= low else p.pos
+    p.target = target
+    p.enabled = 1
+    p.active = 1
+
+
+cdef double fraction(double value) noexcept nogil:
+    """jog-accel-fraction counts from 0 (not included) to 1."""
+    return value if 0.0 < value <= 1.0 else 1.0
+
+
+cdef void joint_wheel(Motion* m, Joint* joint, int homing) noexcept nogil:
+    cdef double low, high
+    cdef int counts = joint.jog_counts - joint.wheel_counts
+    joint.wheel_counts = joint.jog_counts
+    if counts == 0 or not joint.jog_enable or m.mode != MotionState_FREE or homing:
+        return
+    if not m.enabled or m.jog_inhibit or m.jog_stop or joint.kb_jog or joint.home.sequence < 0 or not joint.active:
+        return
+    if not m.override_limits and (joint.on_pos_limit or joint.on_neg_limit):
+        return
+    jog_bounds(joint, &low, &high)
+    joint.jog_vel = joint.vel_limit
+    joint.free.vel_limit = joint.vel_limit
+    joint.free.acc_limit = joint.acc_limit * fraction(joint.jog_accel_fraction)
+    turn(&joint.free, counts * joint.jog_scale, joint.jog_vel_mode, low, high, m.dt)
+    joint.wheel_jog = 1
+    m.overriding_jog = m.override_limits != 0
+
+
+cdef void axis_wheel(Motion* m, Axis* axis) noexcept nogil:
+    cdef int counts = axis.jog_counts - axis.wheel_counts
+    axis.wheel_counts = axis.jog_counts
+    if counts == 0 or not axis.jog_enable or m.mode != MotionState_TELEOP or not m.enabled:
+        return
+    if m.jog_inhibit or m.jog_stop or axis.kb_jog or axis.vel_net <= 0.0:
+        return
+    axis.jog_vel = axis.vel_net
+    axis.teleop.vel_limit = axis.vel_net
+    axis.teleop.acc_limit = axis.acc_net * fraction(axis.jog_accel_fraction)
+    turn(&axis.teleop, counts * axis.jog_scale, axis.jog_vel_mode, axis.min_limit, axis.max_limit, m.dt)
+    axis.wheel_jog = 1
+
+
+cdef void jog_cycle(Motion* m) noexcept nogil:
+    """One period: wheels, stop pins, speeds under the feed override, and which jogs have ended."""
+    cdef int n
+    cdef int homing = 0
+    cdef double scale = m.feed_scale if m.enables & Enables_FS else 1.0
+    cdef Joint* joint
+    cdef Axis* axis
+    if m.jog_active and (m.jog_stop or m.jog_stop_immediate):
+        stop_jogs(m)
+    for n in range(m.num_joints):
+        homing |= m.joint[n].home.homing
+    m.jog_active = 0
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        joint_wheel(m, joint, homing)
+        if not joint.home.homing and m.mode == MotionState_FREE:
+            if not joint.free.active:
+                joint.kb_jog = 0
+                joint.wheel_jog = 0
+            joint.free.vel_limit = min(joint.jog_vel, joint.vel_limit * scale)
+        m.jog_active |= joint.kb_jog or joint.wheel_jog
+    for n in range(MAX_AXES):
+        axis = &m.axis[n]
+        axis_wheel(m, axis)
+        if not axis.teleop.active:
+            axis.kb_jog = 0
+            axis.wheel_jog = 0
+        axis.teleop.vel_limit = min(axis.jog_vel, axis.vel_net * scale)
+        m.jog_active |= axis.kb_jog or axis.wheel_jog

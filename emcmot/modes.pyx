@@ -1,0 +1,180 @@
+"""Enabling, disabling, and the changes between free, teleop and coordinated mode.
+
+Commands only say what is wanted; ``set_mode`` carries it out at the first period in which the machine stands still. So no
+change of mode ever makes a joint's command jump or break its limits: what moves is first brought to rest by whoever moves it.
+"""
+
+from libc.math cimport isfinite
+from libc.stdio cimport snprintf
+
+from emcmot._messages cimport MAX_AXES, MotionState_COORD, MotionState_FREE, MotionState_TELEOP
+from emcmot.eoffset cimport eoffsets_still, forget_eoffsets
+from emcmot.free_planner cimport free_planner_rest_at
+from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
+from emcmot.jog cimport stop_jogs
+from emcmot.joint cimport set_joint_position
+from emcmot.probe cimport PROBE_OFF
+from emcmot.report cimport TEXT_SIZE, report
+from emcmot.spindle cimport stop_spindles
+from emcmot.state cimport Axis, Joint, Motion
+from emcmot.tp.tp cimport TP_OK, tp_abort, tp_set_pos
+from emcmot.world cimport align_joints, world_from_joints
+
+
+cdef int resting(Motion* m) noexcept nogil:
+    """Whether nothing moves or is about to."""
+    cdef int n
+    if m.mode == MotionState_COORD:
+        return m.tp_status.done
+    if m.mode == MotionState_TELEOP:
+        for n in range(MAX_AXES):
+            if m.axis[n].teleop.active:
+                return 0
+        return 1
+    if m.tracking:
+        return 1
+    for n in range(m.num_joints):
+        if m.joint[n].free.active or m.joint[n].home.homing:
+            return 0
+    return m.home_step == SEQUENCE_IDLE
+
+
+cdef void stop_all(Motion* m) noexcept nogil:
+    """ABORT: whatever moves comes to rest under its limits, whatever waits is dropped."""
+    cancel_homing(m)
+    stop_jogs(m)
+    if not m.tp_status.done or m.tp_status.depth > 0:
+        tp_abort(m.tp)
+    m.probing = PROBE_OFF
+    m.pending_io_set = 0
+    m.pending_io.dout_mask = 0
+    m.pending_io.aout_mask = 0
+    m.paused = 0
+    m.stepping = 0
+    m.wait_spindles = 0
+    m.stopping = 1
+
+
+cdef void switch_off(Motion* m) noexcept nogil:
+    cdef int n
+    m.enabled = 0
+    m.tracking = 0
+    for n in range(m.num_joints):
+        m.joint[n].amp_enable = 0
+    stop_all(m)
+    stop_spindles(m)
+
+
+cdef void switch_on(Motion* m) noexcept nogil:
+    """Take the joints where they are and enable their drives."""
+    cdef int n
+    cdef Joint* joint
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        if joint.active and not isfinite(joint.pos_fb):
+            m.enable_wanted = 0
+            snprintf(report(m, n), TEXT_SIZE, b"Can't enable motion: the position feedback of joint %d is not a number", n)
+            return
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        if joint.active:
+            set_joint_position(joint, joint.pos_fb)
+        joint.free.acc_limit = joint.acc_limit
+        joint.amp_enable = joint.active
+        joint.error = 0
+        joint.jog_vel = 0.0
+    m.enabled = 1
+    m.tracking = 0
+    m.coord_error = 0
+    forget_eoffsets(m)
+    world_from_joints(m)
+
+
+cdef void enter_free(Motion* m) noexcept nogil:
+    cdef int n
+    cdef Joint* joint
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        free_planner_rest_at(&joint.free, joint.pos_cmd)
+        joint.free.acc_limit = joint.acc_limit
+        joint.jog_vel = 0.0
+    m.mode = MotionState_FREE
+
+
+cdef void enter_teleop(Motion* m) noexcept nogil:
+    cdef int n
+    cdef Axis* axis
+    for n in range(MAX_AXES):
+        axis = &m.axis[n]
+        free_planner_rest_at(&axis.teleop, m.pos_cmd[n] - m.eoffset[n])
+        axis.teleop.acc_limit = axis.acc_net
+        axis.pos_cmd = axis.teleop.pos
+        axis.jog_vel = 0.0
+    m.mode = MotionState_TELEOP
+
+
+cdef void enter_coord(Motion* m) noexcept nogil:
+    """The planner begins where the machine is; it may need a period more to be done with what it had."""
+    cdef double pos[MAX_AXES]
+    cdef int n
+    for n in range(MAX_AXES):
+        pos[n] = m.pos_cmd[n] - m.eoffset[n]
+    if tp_set_pos(m.tp, pos) == TP_OK:
+        m.mode = MotionState_COORD
+        m.coord_error = 0
+
+
+cdef void change_mode(Motion* m) noexcept nogil:
+    """At rest: let another planner make the commands."""
+    if not eoffsets_still(m):
+        return
+    if m.mode_wanted == MotionState_FREE:
+        enter_free(m)
+        return
+    if m.mode == MotionState_FREE:
+        if world_from_joints(m) != 0:
+            m.mode_wanted = MotionState_FREE
+            snprintf(report(m), TEXT_SIZE, b"The position of the tool is not known: home the machine first")
+            return
+        align_joints(m)
+    if m.mode_wanted == MotionState_TELEOP:
+        enter_teleop(m)
+    else:
+        enter_coord(m)
+
+
+cdef void set_mode(Motion* m) noexcept nogil:
+    """Carry out what ENABLE, DISABLE, FREE, TELEOP, COORD and faults asked for, as far as the motion allows."""
+    cdef int rest
+    if m.enabled and not m.enable_wanted:
+        switch_off(m)
+    rest = resting(m)
+    if rest:
+        m.stopping = 0
+    if m.enable_wanted and not m.enabled and rest and eoffsets_still(m):
+        if m.mode != MotionState_FREE:
+            enter_free(m)
+        switch_on(m)
+    if not m.enabled and rest and eoffsets_still(m):
+        if m.mode != MotionState_FREE:
+            enter_free(m)
+        m.tracking = 1
+    elif m.enabled and rest and m.mode != m.mode_wanted:
+        change_mode(m)
+
+
+cdef void fall_to_free(Motion* m) noexcept nogil:
+    """The Cartesian command cannot be followed: each joint comes to rest by itself from the speed it has."""
+    cdef int n
+    cdef Joint* joint
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        free_planner_rest_at(&joint.free, joint.pos_cmd)
+        joint.free.acc_limit = joint.acc_limit
+        joint.free.vel = joint.vel_cmd
+        joint.free.active = 1
+    m.mode = MotionState_FREE
+    m.mode_wanted = MotionState_FREE
+    stop_all(m)
+    m.coord_error = 1
+    snprintf(report(m), TEXT_SIZE, b"The commanded position can't be reached by the joints: motion stopped")

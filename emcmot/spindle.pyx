@@ -1,0 +1,108 @@
+"""Spindles: what was commanded becomes speed, direction, brake and orientation pins, once a period.
+
+Nothing here starts a spindle: only SPINDLE_ON sets ``state``. Speeds are rpm unless the name ends in ``_rps``.
+"""
+
+from libc.math cimport fabs
+from libc.stdio cimport snprintf
+
+from emcmot._messages cimport Enables_SS
+from emcmot.report cimport TEXT_SIZE, report
+from emcmot.state cimport ORIENT_COMPLETE, ORIENT_FAULTED, ORIENT_IN_PROGRESS, ORIENT_NONE, Motion, Spindle
+
+
+cdef void stop_spindle(Spindle* s) noexcept nogil:
+    s.state = 0
+    s.speed = 0.0
+    s.direction = 0
+    s.css_factor = 0.0
+    s.css_maximum = 0.0
+    s.increasing = 0
+    s.locked = 0
+    s.orient = 0
+    s.orient_state = ORIENT_NONE
+    s.reversed_by_tap = 0
+    s.brake = 1
+
+
+cdef void stop_spindles(Motion* m) noexcept nogil:
+    cdef int n
+    for n in range(m.num_spindles):
+        stop_spindle(&m.spindle[n])
+
+
+cdef void orient_spindle(Spindle* s, double angle, int mode, double timeout) noexcept nogil:
+    """Begin an M19: the drive turns the spindle to the angle and answers on is-oriented or orient-fault."""
+    stop_spindle(s)
+    s.brake = 0
+    s.orient = 1
+    s.orient_angle = angle
+    s.orient_mode = mode
+    s.orient_timeout = timeout
+    s.orient_state = ORIENT_IN_PROGRESS
+
+
+cdef void orient_cycle(Motion* m, Spindle* s, int number) noexcept nogil:
+    if s.orient_state != ORIENT_IN_PROGRESS:
+        return
+    s.orient_timeout -= m.dt
+    if s.orient_fault != 0:
+        s.orient = 0
+        s.orient_state = ORIENT_FAULTED
+        snprintf(report(m), TEXT_SIZE, b"Spindle %d: fault %d during orient", number, s.orient_fault)
+    elif s.is_oriented:
+        s.orient = 0
+        s.locked = 1
+        s.brake = 1
+        s.orient_state = ORIENT_COMPLETE
+
+
+cdef double wanted_speed(Motion* m, Spindle* s) noexcept nogil:
+    """The commanded speed with constant surface speed, override and the spindle's limits, signed."""
+    cdef double speed = s.speed
+    cdef double radius, size
+    if s.state == 0:
+        return 0.0
+    if s.css_factor != 0.0:
+        radius = fabs(s.xoffset - m.pos_cmd[0])
+        size = fabs(s.css_factor) / radius if radius > 0.0 else fabs(s.css_maximum)
+        if s.css_maximum != 0.0 and size > fabs(s.css_maximum):
+            size = fabs(s.css_maximum)
+        speed = -size if s.css_factor < 0.0 or s.speed < 0.0 else size
+    speed *= s.net_scale
+    if s.reversed_by_tap:
+        speed = -speed
+    if speed > 0.0:
+        return min(max(speed, s.min_speed), s.max_speed)
+    if speed < 0.0:
+        return max(min(speed, s.min_reverse_speed), s.max_reverse_speed)
+    return 0.0
+
+
+cdef void spindle_cycle(Motion* m) noexcept nogil:
+    cdef int n
+    cdef Spindle* s
+    for n in range(m.num_spindles):
+        s = &m.spindle[n]
+        s.net_scale = s.scale if m.enables & Enables_SS else 1.0
+        if s.inhibit:
+            s.net_scale = 0.0
+        orient_cycle(m, s, n)
+        s.speed_out = wanted_speed(m, s)
+        s.speed_out_abs = fabs(s.speed_out)
+        s.speed_out_rps = s.speed_out / 60.0
+        s.speed_out_rps_abs = s.speed_out_abs / 60.0
+        s.speed_cmd_rps = s.speed / 60.0
+        s.on = s.state != 0
+        s.forward = s.speed_out > 0.0
+        s.reverse = s.speed_out < 0.0
+
+
+cdef int spindles_at_speed(Motion* m) noexcept nogil:
+    """Bit mask of the spindles whose at-speed pin is true."""
+    cdef int n
+    cdef int mask = 0
+    for n in range(m.num_spindles):
+        if m.spindle[n].at_speed:
+            mask |= 1 << n
+    return mask

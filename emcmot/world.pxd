@@ -1,0 +1,19 @@
+"""Between axes and joints: kinematics, soft limits in Cartesian space, and the planner's axis limits."""
+
+from emcmot._messages cimport EmcPose
+from emcmot.state cimport Motion
+
+cdef inline double* coordinates(EmcPose* pose) noexcept nogil:
+    """The pose as nine numbers: x y z a b c u v w."""
+    return <double*>pose
+
+cdef int forward(Motion* m, double* joints, double* pose) noexcept nogil
+cdef int inverse(Motion* m, double* joints, double* pose) noexcept nogil
+cdef void update_world_feedback(Motion* m) noexcept nogil
+cdef int world_from_joints(Motion* m) noexcept nogil
+cdef int command_world(Motion* m, double* pose) noexcept nogil
+cdef void align_joints(Motion* m) noexcept nogil
+cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose) noexcept nogil
+cdef void refresh_planner_limits(Motion* m) noexcept nogil
+cdef int kinematics_usable(Motion* m) noexcept nogil
+cdef const char* AXIS_NAMES

@@ -1,0 +1,201 @@
+"""Between axes and joints: kinematics, soft limits in Cartesian space, and the planner's axis limits."""
+
+from libc.math cimport fabs, isfinite, sqrt
+from libc.stdio cimport snprintf
+
+from emcmot._messages cimport MAX_AXES, MAX_JOINTS
+from emcmot.free_planner cimport free_planner_rest_at, free_planner_step
+from emcmot.joint cimport command_joint
+from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY
+from emcmot.report cimport TEXT_SIZE, report
+from emcmot.state cimport Axis, Joint, Motion
+from emcmot.tp.tp cimport tp_set_axis_limits
+
+cdef const char* AXIS_NAMES = b"XYZABCUVW"
+cdef double LIMIT_TOLERANCE = 1e-9   # lu or deg, relative to 1 + |limit|: rounding of unit conversions
+cdef double ALIGN_SHARE = 0.1        # share of a joint's limits for closing a gap between joints and kinematics
+
+
+cdef int all_finite(const double* values, int count) noexcept nogil:
+    cdef int i
+    for i in range(count):
+        if not isfinite(values[i]):
+            return 0
+    return 1
+
+
+cdef int forward(Motion* m, double* joints, double* pose) noexcept nogil:
+    """0 and the pose of these joints, or -1."""
+    cdef double result[MAX_AXES]
+    cdef int i
+    if m.kins.forward == NULL or m.kins.type == KINEMATICS_INVERSE_ONLY:
+        return -1
+    for i in range(MAX_AXES):
+        result[i] = pose[i]
+    if m.kins.forward(m.kins, joints, result) != 0 or not all_finite(result, MAX_AXES):
+        return -1
+    for i in range(MAX_AXES):
+        pose[i] = result[i]
+    return 0
+
+
+cdef int inverse(Motion* m, double* joints, double* pose) noexcept nogil:
+    """0 and the joints of this pose, or -1."""
+    if m.kins.inverse(m.kins, joints, pose) != 0 or not all_finite(joints, m.kins.joints):
+        return -1
+    return 0
+
+
+cdef int kinematics_usable(Motion* m) noexcept nogil:
+    """Whether joint positions mean something to the kinematics: identity always does, others when all is homed."""
+    return m.kins.type == KINEMATICS_IDENTITY or m.all_homed
+
+
+cdef void update_world_feedback(Motion* m) noexcept nogil:
+    """carte_pos_fb: forward kinematics where they work, the command where there are none, else left alone."""
+    cdef double joints[MAX_JOINTS]
+    cdef int n
+    if m.kins.forward == NULL or m.kins.type == KINEMATICS_INVERSE_ONLY:
+        for n in range(MAX_AXES):
+            m.pos_fb[n] = m.pos_cmd[n]
+        m.pos_fb_ok = m.pos_cmd_ok
+        return
+    if not kinematics_usable(m):
+        m.pos_fb_ok = 0
+        return
+    for n in range(m.num_joints):
+        joints[n] = m.joint[n].pos_fb
+    m.pos_fb_ok = forward(m, joints, m.pos_fb) == 0
+
+
+cdef int world_from_joints(Motion* m) noexcept nogil:
+    """carte_pos_cmd of the joints' commands, in free mode; -1 where it cannot be known."""
+    cdef double joints[MAX_JOINTS]
+    cdef int n
+    if not kinematics_usable(m):
+        m.pos_cmd_ok = 0
+        return -1
+    if m.kins.forward == NULL or m.kins.type == KINEMATICS_INVERSE_ONLY:
+        m.pos_cmd_ok = world_home_reached(m)
+        return 0 if m.pos_cmd_ok else -1
+    for n in range(m.num_joints):
+        joints[n] = m.joint[n].pos_cmd
+    m.pos_cmd_ok = forward(m, joints, m.pos_cmd) == 0
+    return 0 if m.pos_cmd_ok else -1
+
+
+cdef int world_home_reached(Motion* m) noexcept nogil:
+    """Without forward kinematics a pose is known in one place only: all joints at HOME is the world's home."""
+    cdef int n
+    for n in range(m.num_joints):
+        if m.joint[n].pos_cmd != m.joint[n].home.home:
+            return 0
+    for n in range(MAX_AXES):
+        m.pos_cmd[n] = m.world_home[n]
+    return 1
+
+
+cdef void align_joints(Motion* m) noexcept nogil:
+    """Before a Cartesian mode begins: keep each joint where it is, as a difference that then fades under limits.
+
+    The joints of a gantry, for example, stand a little apart when the machine is switched on.
+    """
+    cdef double joints[MAX_JOINTS]
+    cdef Joint* joint
+    cdef int n
+    if inverse(m, joints, m.pos_cmd) != 0:
+        return
+    for n in range(m.kins.joints):
+        joint = &m.joint[n]
+        free_planner_rest_at(&joint.align, joint.pos_cmd - joints[n])
+        joint.align.target = 0.0
+        joint.align.vel_limit = ALIGN_SHARE * joint.vel_limit
+        joint.align.acc_limit = ALIGN_SHARE * joint.acc_limit
+        joint.align.enabled = 1
+
+
+cdef int command_world(Motion* m, double* pose) noexcept nogil:
+    """Make ``pose`` the command of this period, for all joints; -1, and nothing done, where it cannot be reached."""
+    cdef double joints[MAX_JOINTS]
+    cdef double way = 0.0
+    cdef Joint* joint
+    cdef int n
+    for n in range(m.num_joints):
+        joints[n] = m.joint[n].pos_cmd
+    if not all_finite(pose, MAX_AXES) or inverse(m, joints, pose) != 0:
+        return -1
+    for n in range(3):
+        way += (pose[n] - m.pos_cmd[n]) * (pose[n] - m.pos_cmd[n])
+    m.distance_travelled += sqrt(way)
+    for n in range(MAX_AXES):
+        m.pos_cmd[n] = pose[n]
+    for n in range(m.kins.joints):
+        joint = &m.joint[n]
+        if joint.align.pos != 0.0 or joint.align.vel != 0.0:
+            free_planner_step(&joint.align, m.dt)
+        joint.coarse_pos = joints[n] + joint.align.pos
+        command_joint(joint, joint.coarse_pos, m.dt)
+    m.pos_cmd_ok = 1
+    return 0
+
+
+cdef double slack(double limit) noexcept nogil:
+    return LIMIT_TOLERANCE * (1.0 + fabs(limit))
+
+
+cdef int refuse(Motion* m, const char* what, long move_id, const char* place, const char* side, double value, double limit) noexcept nogil:
+    snprintf(
+        report(m, -1, move_id), TEXT_SIZE, b"%s move on line %ld would exceed %s's %s limit: %.4f, limit %.4f",
+        what, move_id, place, side, value, limit,
+    )
+    return -1
+
+
+cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose) noexcept nogil:
+    """0 where the machine may stand at ``pose``; else -1, with a report that says why not."""
+    cdef double joints[MAX_JOINTS]
+    cdef char place[16]
+    cdef Axis* axis
+    cdef Joint* joint
+    cdef double value
+    cdef int n
+    for n in range(MAX_AXES):
+        axis = &m.axis[n]
+        value = pose[n] + m.eoffset[n]
+        snprintf(place, sizeof(place), b"%c", AXIS_NAMES[n])
+        if value > axis.max_limit + slack(axis.max_limit):
+            return refuse(m, what, move_id, place, b"positive", value, axis.max_limit)
+        if value < axis.min_limit - slack(axis.min_limit):
+            return refuse(m, what, move_id, place, b"negative", value, axis.min_limit)
+    for n in range(m.num_joints):
+        joints[n] = m.joint[n].pos_cmd
+    if inverse(m, joints, pose) != 0:
+        snprintf(report(m, -1, move_id), TEXT_SIZE, b"%s move on line %ld ends where the machine cannot reach", what, move_id)
+        return -1
+    for n in range(m.kins.joints):
+        joint = &m.joint[n]
+        snprintf(place, sizeof(place), b"joint %d", n)
+        if not joint.active:
+            continue
+        if joints[n] > joint.max_limit + slack(joint.max_limit):
+            return refuse(m, what, move_id, place, b"positive", joints[n], joint.max_limit)
+        if joints[n] < joint.min_limit - slack(joint.min_limit):
+            return refuse(m, what, move_id, place, b"negative", joints[n], joint.min_limit)
+    return 0
+
+
+cdef void refresh_planner_limits(Motion* m) noexcept nogil:
+    """Tell the planner what each axis may do; an axis that is a joint may not do more than its joint."""
+    cdef double vel, acc
+    cdef int n, i
+    for i in range(MAX_AXES):
+        vel = m.axis[i].vel_limit
+        acc = m.axis[i].acc_limit
+        for n in range(m.kins.joints):
+            if m.kins.axis_of_joint[n] == i:
+                vel = min(vel, m.joint[n].vel_limit) if vel > 0.0 else m.joint[n].vel_limit
+                acc = min(acc, m.joint[n].acc_limit) if acc > 0.0 else m.joint[n].acc_limit
+        m.axis[i].vel_net = vel
+        m.axis[i].acc_net = acc
+        if vel > 0.0 and acc > 0.0:
+            tp_set_axis_limits(m.tp, i, vel, acc, 0.0)
