@@ -1,0 +1,45 @@
+"""What the launcher reads from an INI file, and how it names what is wrong with it."""
+
+import pytest
+
+from linuxcnc.configuration import Configuration
+from nml.errors import ConfigError
+from tests.support.machine import copy_mill
+
+
+def configuration(folder, changes=None):
+    return Configuration(copy_mill(folder, changes=changes))
+
+
+def test_the_programs_are_modules_of_ours(tmp_path):
+    found = configuration(tmp_path)
+    assert found.task[1:4] == ["-P", "-m", "emctask"]
+    assert found.io[3] == "emcio"
+    assert found.display()[3:] == ["gui.linuxcncrsh", "--port", "0", "-ini", str(tmp_path / "mill_mm.ini")]
+    assert found.halui is None
+
+
+def test_a_display_may_be_any_executable(tmp_path):
+    screen = tmp_path / "myscreen"
+    screen.write_text("#!/bin/sh\n")
+    screen.chmod(0o755)
+    found = configuration(tmp_path, {"DISPLAY.DISPLAY": "myscreen --big"})
+    assert found.display() == [str(screen), "--big", "-ini", str(tmp_path / "mill_mm.ini")]
+
+
+def test_hal_files_come_in_their_order(tmp_path):
+    assert [path.name for path in configuration(tmp_path).hal_files] == ["mill.hal", "spindle.hal"]
+
+
+def test_the_environment_names_what_scripts_expect(tmp_path):
+    found = configuration(tmp_path).environment()
+    assert found["INI_FILE_NAME"] == str(tmp_path / "mill_mm.ini")
+    assert found["CONFIG_DIR"] == str(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"), [("HAL.HALFILE", "a.hal b.hal"), ("HAL.HALFILE", "none.hal"), ("EMCIO.EMCIO", "noio")]
+)
+def test_a_mistake_is_named_with_its_line(tmp_path, entry, value):
+    with pytest.raises(ConfigError, match=rf"mill_mm.ini:\d+: .*{value}"):
+        configuration(tmp_path, {entry: value})
