@@ -1,0 +1,247 @@
+"""``linuxcncsvr``: the process that offers the buffers of the NML file to remote programs.
+
+    python -m nml.net.server -ini FILE [-nml FILE] [--listen ADDRESS]
+
+It opens, as process ``emcsvr`` of the NML file, every buffer whose B line has TCP=, STCP=, UDP= or serialPortDevName=,
+and serves them all from one thread: nothing it calls waits for a client, and a local process never waits for it. Only
+programs of this host reach it unless --listen, the environment's PYEMC_NML_LISTEN or [NML]LISTEN of the INI file
+names another address.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import logging
+import os
+import resource
+import select
+import signal
+import socket
+import sys
+
+from nml.clock import host_now
+from nml.config import BufferLine, NmlConfig
+from nml.errors import ConfigError, NmlError
+from nml.inifile import IniFile
+from nml.net.datagram import UdpPort
+from nml.net.protocol import Session
+from nml.net.serial_line import SerialPort
+from nml.net.served import Shelf
+from nml.net.stcp import TextSession
+from nml.net.streams import Connection, Limits, Listener, Release, SessionLike, Watched
+
+log = logging.getLogger(__name__)
+
+PROCESS = "emcsvr"
+LOOPBACK = "127.0.0.1"
+LISTEN_VARIABLE = "PYEMC_NML_LISTEN"
+_CHECK_PERIOD = 1.0
+_SPARE_FILES = 128
+_NEVER = float("inf")
+
+
+class Server:
+    """Buffers, links and the loop that serves them. ConfigError: the NML file asks for what cannot be done.
+
+    ``optional``: a link that cannot be opened is left out with a warning.
+    """
+
+    def __init__(
+        self,
+        config: NmlConfig,
+        *,
+        process: str = PROCESS,
+        listen: str = LOOPBACK,
+        optional: bool = False,
+        limits: Limits | None = None,
+    ) -> None:
+        self.limits = limits or Limits()
+        self._epoll = select.epoll()
+        self._watched: dict[int, Watched] = {}
+        self._connections: dict[Connection, None] = {}
+        self._followed: set[Connection] = set()
+        self._stopping = False
+        self._shelf = Shelf(config, process)
+        try:
+            if not self._shelf.buffers:
+                raise ConfigError(f"{config.path}: process {process} has no buffer to serve with a TCP= or other link")
+            self._open_links(listen, optional)
+        except BaseException:
+            self.close()
+            raise
+
+    def _open_links(self, listen: str, optional: bool) -> None:
+        opened: set[tuple[str, int | str]] = set()
+        for line in [served.line for served in self._shelf.buffers.values()]:
+            for kind, where in _links_of(line):
+                if (kind, where) in opened:
+                    continue
+                try:
+                    self._open_link(kind, where, listen, line)
+                except OSError as error:
+                    reason = error.strerror or str(error)
+                    message = f"buffer {line.name}: cannot serve {kind}={where}: {reason}"
+                    if not optional:
+                        raise ConfigError(message, line.place) from None
+                    log.warning("%s: %s; nobody can connect there", line.place, message)
+                opened.add((kind, where))
+
+    def _open_link(self, kind: str, where: int | str, listen: str, line: BufferLine) -> None:
+        match kind, where:
+            case "TCP", int(port):
+                Listener((listen, port), self, self._tcp_session)
+            case "STCP", int(port):
+                Listener((listen, port), self, self._text_session)
+            case "UDP", int(port):
+                UdpPort((listen, port), self, self._shelf)
+            case "serialPortDevName", str(device):
+                SerialPort(device, line.baud, self, self._shelf)
+
+    def _tcp_session(self) -> tuple[SessionLike, Release]:
+        desk = self._shelf.desk()
+        return Session(desk), desk.close
+
+    def _text_session(self) -> tuple[SessionLike, Release]:
+        desk = self._shelf.desk()
+        return TextSession(desk), desk.close
+
+    # The loop, and what its members ask of it (``streams.Loop``)
+
+    def run(self) -> None:
+        """Serve until ``stop``."""
+        next_check = host_now() + _CHECK_PERIOD
+        while not self._stopping:
+            due = min([connection.due for connection in self._followed], default=_NEVER)
+            timeout = min(due, next_check) - host_now()
+            for fd, events in self._epoll.poll(max(timeout, 0.0)):
+                owner = self._watched.get(fd)
+                if owner is not None:
+                    owner.ready(events)
+            now = host_now()
+            if self._followed:
+                self._go_on(now)
+            if now >= next_check:
+                next_check = now + _CHECK_PERIOD
+                for connection in list(self._connections):
+                    connection.check(now)
+
+    def _go_on(self, now: float) -> None:
+        for connection in list(self._followed):
+            due = connection.due
+            if due == _NEVER:
+                self._followed.discard(connection)
+            elif due <= now:
+                connection.tick(now)
+
+    def stop(self) -> None:
+        """End ``run``; callable from a signal handler."""
+        self._stopping = True
+
+    def watch(self, fd: int, owner: Watched, events: int) -> None:
+        self._watched[fd] = owner
+        self._epoll.register(fd, events)
+
+    def change(self, fd: int, events: int) -> None:
+        self._epoll.modify(fd, events)
+
+    def forget(self, fd: int) -> None:
+        del self._watched[fd]
+        self._epoll.unregister(fd)
+
+    def follow(self, connection: Connection) -> None:
+        self._followed.add(connection)
+
+    def admit(self, connection: Connection) -> None:
+        while len(self._connections) >= self.limits.connections:
+            self.make_room()
+        self._connections[connection] = None
+
+    def dismiss(self, connection: Connection) -> None:
+        self._connections.pop(connection, None)
+        self._followed.discard(connection)
+
+    def make_room(self) -> None:
+        if self._connections:
+            min(self._connections, key=lambda connection: connection.quiet_since).close()
+
+    def close(self) -> None:
+        """Close every link and let go of the buffers."""
+        for owner in list(self._watched.values()):
+            owner.close()
+        self._epoll.close()
+        self._shelf.close()
+
+
+def _links_of(line: BufferLine) -> list[tuple[str, int | str]]:
+    """The options of a B line that ask for a link."""
+    links = (("TCP", line.tcp), ("STCP", line.stcp), ("UDP", line.udp), ("serialPortDevName", line.serial_port))
+    return [(kind, where) for kind, where in links if where is not None]
+
+
+class _Wakeup:
+    """Ends the wait of the loop when a signal arrives."""
+
+    def __init__(self, server: Server) -> None:
+        self._read, self._write = socket.socketpair()
+        for end in (self._read, self._write):
+            end.setblocking(False)
+        signal.set_wakeup_fd(self._write.fileno(), warn_on_full_buffer=False)
+        server.watch(self._read.fileno(), self, select.EPOLLIN)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: server.stop())
+
+    def ready(self, events: int) -> None:
+        with contextlib.suppress(BlockingIOError):
+            self._read.recv(64)
+
+    def close(self) -> None:
+        signal.set_wakeup_fd(-1)
+        self._read.close()
+        self._write.close()
+
+
+def _allow_files(connections: int) -> int:
+    """Raise the limit of open files as far as needed; how many connections it then allows."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = connections + _SPARE_FILES
+    if soft < wanted:
+        soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+    return max(1, min(connections, soft - _SPARE_FILES))
+
+
+def _arguments(argv: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="linuxcncsvr", description="Offer the buffers of an NML file to a network.")
+    parser.add_argument("-ini", metavar="FILE", default=os.environ.get("INI_FILE_NAME"), help="INI file")
+    parser.add_argument("-nml", metavar="FILE", help="NML file instead of the one that the INI file names")
+    parser.add_argument("--listen", metavar="ADDRESS", help=f"address to listen on, {LOOPBACK} by default")
+    parser.add_argument("--optional", action="store_true", help="go on without a port that is in use")
+    return parser.parse_args(argv)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """The command ``linuxcncsvr``."""
+    arguments = _arguments(argv)
+    logging.basicConfig(format="linuxcncsvr: %(message)s")
+    try:
+        listen = arguments.listen or os.environ.get(LISTEN_VARIABLE)
+        if arguments.ini:
+            os.environ["INI_FILE_NAME"] = arguments.ini
+            listen = listen or IniFile(arguments.ini).find("NML", "LISTEN")
+        config = NmlConfig.load(arguments.nml)
+        limits = Limits(connections=_allow_files(Limits().connections))
+        server = Server(config, listen=listen or LOOPBACK, optional=arguments.optional, limits=limits)
+    except (ConfigError, NmlError) as error:
+        print(f"linuxcncsvr: {error}", file=sys.stderr)
+        return 1
+    try:
+        _Wakeup(server)
+        server.run()
+    finally:
+        server.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
