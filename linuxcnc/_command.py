@@ -58,14 +58,16 @@ def _text(text: str, what: str) -> str:
 
 
 class command:
-    """Connection to the command channel; ``serial`` is the number of the command given last."""
+    """Connection to the command channel."""
+
+    serial = 0
+    """Serial number of the command given last."""
 
     def __init__(self) -> None:
         self._commands = open_channel("emcCommand")
         self._status = open_channel("emcStatus")
         self._echo = 0
         self._result = const.RCS_DONE
-        self.serial = 0
 
     # --- sending and waiting ---------------------------------------------------------------------------------------
 

@@ -10,7 +10,8 @@ import linuxcnc
 
 PYTHON = Path("/usr/bin/python3")
 MODULE = Path("/usr/lib/python3/dist-packages")
-DRAWING = {"draw_dwells", "draw_lines", "gui_respect_offsets", "gui_rot_offsets", "line9", "vertex9"}  # of AXIS's preview
+# What AXIS draws its preview with
+DRAWING = {"draw_dwells", "draw_lines", "gui_respect_offsets", "gui_rot_offsets", "line9", "vertex9"}
 
 pytestmark = [
     pytest.mark.peer,
