@@ -72,7 +72,7 @@ cdef class Buffer:
     cdef object memory
     cdef readonly str name
     cdef bint closed
-    cdef int sleeping
+    cdef readonly int sleepers      # threads in `wait`
     cdef readonly uint64_t last     # number of the message that this channel has read or peeked last
     cdef uint64_t cursor_id
     cdef uint64_t cursor_at

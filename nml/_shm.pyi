@@ -17,6 +17,7 @@ class Buffer:
     name: str
     missed: int
     last: int
+    sleepers: int
     def __init__(
         self,
         memory: mmap.mmap,

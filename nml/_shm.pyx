@@ -588,7 +588,7 @@ cdef class Buffer:
         self.check_open()
         if self.diag is not NULL:
             self.diag.waits += 1
-        self.sleeping += 1
+        self.sleepers += 1
         try:
             while not self.closed:
                 signal = nml_load32(&head.signal)
@@ -602,8 +602,8 @@ cdef class Buffer:
                 PyErr_CheckSignals()
             return False
         finally:
-            self.sleeping -= 1
-            if self.closed and not self.sleeping:
+            self.sleepers -= 1
+            if self.closed and not self.sleepers:
                 self.memory = None
 
     def queue_length(self) -> int:
@@ -668,7 +668,7 @@ cdef class Buffer:
         """Let go of the memory; a ``wait`` in another thread ends."""
         if not self.closed:
             self.closed = True
-            if self.sleeping:
+            if self.sleepers:
                 nml_wake(&self.head.signal, &self.head.waiters)
             else:
                 self.memory = None

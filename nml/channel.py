@@ -20,7 +20,7 @@ from types import TracebackType
 
 from nml import _shm
 from nml.config import BufferLine, BufferType, Mutex, NmlConfig, ProcessLine, ProcessType, is_this_host
-from nml.errors import BufferError_, ConfigError
+from nml.errors import BufferError_, ConfigError, DecodeError, EncodeError
 from nml.message import Command, Message, decode
 from nml.namespace import runtime_dir
 from nml.segment import Memory, Segment
@@ -95,6 +95,7 @@ class Channel:
         assert self._memory.map is not None
         BufferLayout(line).check(self._memory.map)
         self._serial = line.serial
+        self._may_write = process.may_write
         self.raw = _shm.Buffer(
             self._memory.map,
             timeout=process.timeout,
@@ -138,29 +139,33 @@ class Channel:
 
         QueueFull, ChannelTimeout or EncodeError (too long): nothing was written.
         """
-        if not self.process.may_write:
-            raise self._not_allowed("write")
-        return self.raw.write(message.data, self._serial and isinstance(message, Command))
+        return self._put(message)
 
     def write_if_read(self, message: Message) -> int:
         """As ``write``, but only if the last message was read; 0 if it was not."""
-        if not self.process.may_write:
+        return self._put(message, True)
+
+    def _put(self, message: Message, only_if_read: bool = False) -> int:
+        if not self._may_write:
             raise self._not_allowed("write")
-        return self.raw.write(message.data, self._serial and isinstance(message, Command), only_if_read=True)
+        try:
+            return self.raw.write(message.data, self._serial and isinstance(message, Command), only_if_read)
+        except EncodeError:
+            raise self._too_long(message) from None
 
     def read(self) -> Message | None:
         """The next message, taken from a queue; None: nothing new since this channel's last read or peek."""
         if not self.process.may_read:
             raise self._not_allowed("read")
         data = self.raw.read()
-        return None if data is None else decode(data)
+        return None if data is None else self._decoded(data)
 
     def peek(self) -> Message | None:
         """As ``read``, but leaves the message to others: a queue keeps it, a single slot does not count as read."""
         if not self.process.may_read:
             raise self._not_allowed("read")
         data = self.raw.peek()
-        return None if data is None else decode(data)
+        return None if data is None else self._decoded(data)
 
     def blocking_read(self, timeout: float = -1.0) -> Message | None:
         """The next message, waited for up to ``timeout`` s of host time (negative: for ever); None if none came."""
@@ -228,6 +233,17 @@ class Channel:
 
     def __repr__(self) -> str:
         return f"<channel {self.process.process} {self.process.ops} {self.line.name}>"
+
+    def _decoded(self, data: bytearray) -> Message:
+        try:
+            return decode(data)
+        except DecodeError as error:
+            raise DecodeError(f"buffer {self.name}: {error}") from None
+
+    def _too_long(self, message: Message) -> EncodeError:
+        kind = type(message).__name__
+        longest = self.raw.longest
+        return EncodeError(f"buffer {self.name}: {kind} has {message.SIZE} bytes, the longest message has {longest}")
 
     def _not_allowed(self, what: str) -> BufferError_:
         line = self.process
