@@ -192,26 +192,38 @@ cdef Phase _line_phase(const TpState* tp, const Span* span) noexcept nogil:
     return phase
 
 
-cdef Phase _curve_phase(const TpState* tp, const Span* span) noexcept nogil:
-    """The largest acceleration to the end of the span; the smallest where the speed is to fall."""
+cdef Phase _curve_phase(TpState* tp, const Span* span) noexcept nogil:
+    """The largest acceleration to the end of the span; the smallest where the speed is to fall.
+
+    What was chosen before on this span may always be held on: it keeps the limits at both ends.
+    """
     cdef Phase phase
     cdef double x = span.h - tp.u
     cdef double limit = exit_limit(tp, tp.active)
     cdef double low, high, target, room
     acceleration_range(span, tp.amax, tp.u, tp.w, &low, &high)
+    if tp.held_span == tp.active:
+        low = fmin(low, tp.held)
+        high = fmax(high, tp.held)
     phase.way = x
     if _holding(tp):
+        tp.held_span = -1
         phase.acceleration = hardest_stop(span, tp.amax, tp.u, tp.w)
         if tp.w + 2.0 * x * phase.acceleration <= 0.0:
             phase.way = -0.5 * tp.w / phase.acceleration if tp.w > 0.0 else x
         else:
             phase.acceleration = fmax(low, -0.5 * tp.w / x)
+            tp.held = phase.acceleration
+            tp.held_span = tp.active
         return phase
     target = feed_cap(tp, tp.active)
     phase.acceleration = fmax(low, fmin(high, (fmin(limit, target) - tp.w) / (2.0 * x)))
+    tp.held = phase.acceleration
+    tp.held_span = tp.active
     if limit < target:
         room = _even_acceleration(tp, span, x, limit)
         if tp.w + limit < 0.25 * room * x and tp.w < 0.99 * target:
+            tp.held_span = -1
             phase.acceleration = room
             phase.way = fmin(limit - tp.w + 2.0 * room * x, 2.0 * (target - tp.w)) / (4.0 * room)
     return phase

@@ -111,6 +111,9 @@ ctypedef struct TpState:
     double u                 # parameter within the active span, 0..h
     double w                 # (du/dt)^2
 
+    double held              # d2u/dt2 chosen last, on span `held_span`, to be held to its end
+    int64_t held_span
+
     double feed_scale
     double rapid_scale
     double adaptive_scale

@@ -201,6 +201,7 @@ cdef void _cut_body(TpState* tp, int64_t last, double end) noexcept nogil:
         span.h = end - span.u0
         _limit_body(tp, _seg(tp, last), span)
     tp.body_end = end
+    tp.held_span = -1
     tp.new_spans = min(tp.new_spans, tp.span_tail - 1)
 
 

@@ -52,7 +52,7 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     for i in range(AXES):
         s.vmax[i] = s.amax[i] = INFINITY
     s.feed_scale = s.rapid_scale = s.adaptive_scale = 1.0
-    s.sweep = -1
+    s.sweep = s.held_span = -1
     return <Tp*>s
 
 
