@@ -12,6 +12,7 @@ from pathlib import Path
 import nml
 from hal.session import find_hal_file
 from nml import clock, namespace
+from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
 from nml.inifile import IniFile
 
@@ -23,6 +24,7 @@ MODULES = {
     "iov2": "emcio",
     "halui": "gui.halui",
     "linuxcncrsh": "gui.linuxcncrsh",
+    "linuxcncsvr": "nml.net.server",
 }
 PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
@@ -42,6 +44,7 @@ class Configuration:
         self.hal_files = self._hal_files()
         self.task = self._command("TASK", "TASK", "milltask")
         self.io = self._command("EMCIO", "EMCIO", "io")
+        self.server = self._server()
         self.halui = self._command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
 
     def display(self) -> list[str]:
@@ -49,6 +52,11 @@ class Configuration:
         if self.ini.find("DISPLAY", "DISPLAY") is None:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
         return self._command("DISPLAY", "DISPLAY", "linuxcncrsh")
+
+    def _server(self) -> list[str]:
+        """The NML server; side by side with another machine (a namespace of its own) it may go without its port."""
+        optional = ["--optional"] if namespace.VARIABLE in os.environ else []
+        return [*python_module(MODULES["linuxcncsvr"]), "-ini", str(self.path), *optional]
 
     def _command(self, section: str, key: str, default: str) -> list[str]:
         """The command line of the program that an entry names: one of ours, or an executable."""
@@ -78,6 +86,7 @@ class Configuration:
                 f"[EMC]NML_FILE = {name}: there is no file {path}; leave the entry out to use the built-in one",
                 self.ini.place("EMC", "NML_FILE"),
             )
+        NmlConfig.load(path)
         return path
 
     def _hal_files(self) -> list[Path]:

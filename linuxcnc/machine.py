@@ -76,6 +76,7 @@ class Machine:
         self._session.host.start()
         self._spawn("io", configuration.io)
         self._spawn("task", configuration.task)
+        self._spawn("server", configuration.server)
         self.wait_until(self._host_runs, "the realtime host")
         self.wait_until(self._component_ready("iocontrol"), "io")
         if configuration.halui is not None:

@@ -17,7 +17,7 @@ REACTION_TIMEOUT = 1.0  # host seconds until a living process must react
 STILL = 1e-9  # lu/s or deg/s, a joint at rest
 
 # Who is ended together, first stage first; what is not named here ends with the displays
-STAGES = (("task",), ("halui", "io"), ("host",))
+STAGES = (("task",), ("halui", "io"), ("host", "server"))
 
 
 def bring_to_rest(records: list[ProcessRecord], nml_file: str | None) -> str | None:

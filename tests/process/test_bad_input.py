@@ -56,13 +56,13 @@ def test_an_ini_value_that_cannot_be(tmp_path, entry, value):
 
 def test_a_missing_nml_file(tmp_path):
     ini = copy_mill(tmp_path)
-    ini.write_text(ini.read_text().replace("[EMC]", "[EMC]\nNML_FILE = none.nml"))
+    ini.write_text(ini.read_text().replace("local.nml", "none.nml"))
     assert re.match(rf"{ini}:\d+: .*none\.nml", fails(ini))
 
 
 def test_a_broken_nml_file(tmp_path):
     ini = copy_mill(tmp_path)
-    ini.write_text(ini.read_text().replace("[EMC]", "[EMC]\nNML_FILE = bad.nml"))
+    ini.write_text(ini.read_text().replace("local.nml", "bad.nml"))
     (tmp_path / "bad.nml").write_text("# buffers\nB emcCommand SHMEM localhost many 0 0 1 16 1001\n")
     assert fails(ini).startswith(f"{tmp_path}/bad.nml:2:")
 

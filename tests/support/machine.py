@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import socket
@@ -16,6 +17,7 @@ from pathlib import Path
 from nml import namespace
 
 ROOT = Path(__file__).parents[2]
+PACKAGED_NML = ROOT / "nml" / "linuxcnc.nml"
 MILL = ROOT / "configs" / "sim" / "mill"
 PROGRAMS = ROOT / "configs" / "sim" / "nc_files"
 PATIENCE = 30.0  # s; a watchdog, not a claim about speed
@@ -32,7 +34,7 @@ def wait_until(condition: Callable[[], object], what: str, timeout: float = PATI
 def copy_mill(folder: Path, *, units: str = "mm", changes: dict[str, str] | None = None, hal: str = "") -> Path:
     """A copy of the simulated mill whose linuxcncrsh takes any free port; ``changes`` replace whole INI lines.
 
-    A key of ``changes`` is ``SECTION.KEY``; its value replaces that of every such entry. ``hal`` is added as a last HAL
+    Its NML buffers have no TCP ports, which parallel tests would quarrel about. A key of ``changes`` is ``SECTION.KEY``; its value replaces that of every such entry. ``hal`` is added as a last HAL
     file.
     """
     for path in MILL.iterdir():
@@ -46,9 +48,12 @@ def copy_mill(folder: Path, *, units: str = "mm", changes: dict[str, str] | None
             section = line.strip("[]")
         key = f"{section}.{line.partition('=')[0].strip()}"
         lines.append(f"{key.partition('.')[2]} = {wanted[key]}" if "=" in line and key in wanted else line)
+        if line == "[EMC]":
+            lines.append("NML_FILE = local.nml")
         if hal and line == "HALFILE = spindle.hal":
             lines.append("HALFILE = test.hal")
     ini.write_text("\n".join(lines) + "\n")
+    (folder / "local.nml").write_text(re.sub(r"TCP=\d+ xdr", "", PACKAGED_NML.read_text()))
     if hal:
         (folder / "test.hal").write_text(hal)
     return ini
