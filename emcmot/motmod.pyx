@@ -1,0 +1,290 @@
+"""The realtime module ``motmod``: motion with its HAL pins, its two functions, its threads and its NML buffers.
+
+``motion-command-handler`` takes the commands that task has queued, ``motion-controller`` runs one period and publishes the
+status. Both are native and never wait: commands, status and error texts go through the lock-free side of the NML buffers.
+"""
+
+from libc.stdint cimport int32_t, int64_t, uintptr_t
+from libc.stdlib cimport calloc, free
+from libc.string cimport memmove
+from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
+
+from emcmot._messages cimport EMCMOT_COMMAND, EMCMOT_ERROR, EMCMOT_STATUS
+from emcmot.commands cimport run
+from emcmot.controller cimport controller
+from emcmot.core cimport Core
+from emcmot.kins.kinematics cimport KinematicsModule
+from emcmot.state cimport Motion
+from hal.cell cimport hal_at, hal_cell, hal_pin
+from nml._shm cimport queue_pop, queue_push, slot_write
+
+from emcmot.core import LIMITS
+from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RO, HAL_S32, HAL_U32
+from nml.channel import Channel
+from nml.errors import HalError
+
+cdef int COMMANDS_PER_PERIOD = 256
+cdef int64_t COMMAND_SHARE = 4     # the handler stops taking commands after this part of a period
+
+NAME_LISTS = ("names_din", "names_dout", "names_ain", "names_aout", "names_misc_errors")
+PERIODS = {"base_period_nsec": 0, "servo_period_nsec": 1_000_000, "traj_period_nsec": 0}
+IGNORED = ("base_thread_fp",)
+TYPES = {"float": HAL_FLOAT, "bit": HAL_BIT, "s32": HAL_S32, "u32": HAL_U32}
+DIRECTIONS = {"IN": HAL_IN, "OUT": HAL_OUT, "IO": HAL_IO}
+DEBUG_PARAMETERS = (
+    *((f"motion.debug-bit-{n}", HAL_BIT) for n in range(2)),
+    *((f"motion.debug-float-{n}", HAL_FLOAT) for n in range(4)),
+    *((f"motion.debug-s32-{n}", HAL_S32) for n in range(2)),
+)
+
+cdef enum Width:
+    WIDTH_FLOAT
+    WIDTH_INT
+    WIDTH_BIT
+
+ctypedef struct Binding:
+    hal_pin pin
+    void* at             # a double, or an int32_t
+    int width
+    int32_t seen         # of an IO pin: what was read; written back only where motion changed it
+
+ctypedef struct Servo:   # everything that the two functions touch
+    Motion* m
+    void* commands
+    void* status
+    void* errors
+    Binding* inputs
+    int input_count
+    Binding* outputs
+    int output_count
+    Binding* both
+    int both_count
+    int64_t last_ns
+    EMCMOT_COMMAND record
+
+
+cdef int64_t now_ns() noexcept nogil:
+    cdef timespec t
+    clock_gettime(CLOCK_MONOTONIC, &t)
+    return t.tv_sec * 1000000000LL + t.tv_nsec
+
+
+cdef inline void take(Binding* b) noexcept nogil:
+    cdef hal_cell* cell = hal_at(b.pin)
+    if b.width == WIDTH_FLOAT:
+        (<double*>b.at)[0] = cell.f
+    elif b.width == WIDTH_BIT:
+        (<int32_t*>b.at)[0] = cell.b != 0
+    else:
+        (<int32_t*>b.at)[0] = cell.s
+
+
+cdef inline void give(const Binding* b) noexcept nogil:
+    cdef hal_cell* cell = hal_at(b.pin)
+    if b.width == WIDTH_FLOAT:
+        cell.f = (<double*>b.at)[0]
+    elif b.width == WIDTH_BIT:
+        cell.b = (<int32_t*>b.at)[0] != 0
+    else:
+        cell.s = (<int32_t*>b.at)[0]
+
+
+cdef void read_pins(Servo* s) noexcept nogil:
+    cdef int n
+    for n in range(s.input_count):
+        take(&s.inputs[n])
+    for n in range(s.both_count):
+        take(&s.both[n])
+        s.both[n].seen = (<int32_t*>s.both[n].at)[0]
+
+
+cdef void write_pins(Servo* s) noexcept nogil:
+    cdef int n
+    for n in range(s.output_count):
+        give(&s.outputs[n])
+    for n in range(s.both_count):
+        if (<int32_t*>s.both[n].at)[0] != s.both[n].seen:
+            give(&s.both[n])
+
+
+cdef void send_errors(Servo* s) noexcept nogil:
+    """Texts that find no room wait for the next period."""
+    cdef Motion* m = s.m
+    cdef int sent = 0
+    while sent < m.error_count and queue_push(s.errors, &m.errors[sent], sizeof(EMCMOT_ERROR)) == 0:
+        sent += 1
+    m.error_count -= sent
+    if sent and m.error_count:
+        memmove(&m.errors[0], &m.errors[sent], m.error_count * sizeof(EMCMOT_ERROR))
+
+
+cdef void command_handler(void* arg, long period_ns) noexcept nogil:
+    """HAL function motion-command-handler."""
+    cdef Servo* s = <Servo*>arg
+    cdef int taken = 0
+    cdef size_t size
+    cdef int64_t start = now_ns()
+    s.m.host_now = start * 1e-9
+    while taken < COMMANDS_PER_PERIOD and (taken & 15 or now_ns() - start < period_ns // COMMAND_SHARE):
+        size = queue_pop(s.commands, &s.record, sizeof(EMCMOT_COMMAND))
+        if size == 0:
+            break
+        run(s.m, &s.record, size)
+        taken += 1
+
+
+cdef void motion_controller(void* arg, long period_ns) noexcept nogil:
+    """HAL function motion-controller."""
+    cdef Servo* s = <Servo*>arg
+    cdef Motion* m = s.m
+    cdef int64_t start = now_ns()
+    m.last_period = <int32_t>(start - s.last_ns)
+    s.last_ns = start
+    read_pins(s)
+    controller(m)
+    write_pins(s)
+    send_errors(s)
+    slot_write(s.status, &m.status, sizeof(EMCMOT_STATUS))
+    m.servo_time = (now_ns() - start) * 1e-9
+    if m.servo_time > m.servo_time_max:
+        m.servo_time_max = m.servo_time
+
+
+cdef class Motmod(Core):
+    """Motion as a loaded module: the core, its bindings and its buffers."""
+
+    cdef Servo servo
+    cdef list channels
+
+    def __cinit__(self):
+        self.channels = []
+
+    def __dealloc__(self):
+        free(self.servo.inputs)
+        free(self.servo.outputs)
+        free(self.servo.both)
+
+    def connect(self):
+        """Open the buffers between task and motion."""
+        addresses = []
+        for name in ("emcmotCommand", "emcmotStatus", "emcmotError"):
+            channel = Channel(None, name, "emcmot")
+            self.channels.append(channel)
+            addresses.append(channel.address)
+        self.servo.m = self.m
+        self.servo.commands = <void*><uintptr_t>addresses[0]
+        self.servo.status = <void*><uintptr_t>addresses[1]
+        self.servo.errors = <void*><uintptr_t>addresses[2]
+        self.servo.last_ns = now_ns()
+
+    def disconnect(self):
+        for channel in self.channels:
+            channel.close()
+        self.channels.clear()
+
+    def bind(self, comp, dict renamed):
+        """Make the HAL pins, and bind those of the kinematics' geometry as inputs."""
+        groups = {"IN": [], "OUT": [], "IO": []}
+        for pin in self.pins:
+            value = self._value(pin)
+            made = comp.pin(renamed.get(pin.name, pin.name), TYPES[pin.type], DIRECTIONS[pin.direction], value=value)
+            groups[pin.direction].append((made.address, pin.address, pin.type))
+        first = self.kinematics.parameter_address
+        for n, address in enumerate(self.kinematics.pin_addresses):
+            groups["IN"].append((address, first + 8 * n, "float"))
+        self.servo.inputs, self.servo.input_count = bindings(groups["IN"]), len(groups["IN"])
+        self.servo.outputs, self.servo.output_count = bindings(groups["OUT"]), len(groups["OUT"])
+        self.servo.both, self.servo.both_count = bindings(groups["IO"]), len(groups["IO"])
+        for name, kind in DEBUG_PARAMETERS:
+            comp.param(name, kind, HAL_RO)
+
+    def _value(self, pin):
+        """What a pin starts with: the state's own default."""
+        if pin.type == "float":
+            return (<double*><uintptr_t>pin.address)[0]
+        value = (<int32_t*><uintptr_t>pin.address)[0]
+        return bool(value) if pin.type == "bit" else value
+
+    def functions(self, comp):
+        arg = <uintptr_t>&self.servo
+        comp.function("motion-command-handler", <uintptr_t><void*>command_handler, arg)
+        comp.function("motion-controller", <uintptr_t><void*>motion_controller, arg)
+
+
+cdef Binding* bindings(list rows) except? NULL:
+    """A C array of (address of the HAL pin, address of the member, type)."""
+    cdef Binding* made = <Binding*>calloc(len(rows) + 1, sizeof(Binding))
+    if made == NULL:
+        raise MemoryError
+    for n, (pin, at, kind) in enumerate(rows):
+        made[n].pin = <hal_pin><uintptr_t>pin
+        made[n].at = <void*><uintptr_t>at
+        made[n].width = WIDTH_FLOAT if kind == "float" else WIDTH_BIT if kind == "bit" else WIDTH_INT
+    return made
+
+
+def integer(name, text):
+    try:
+        return int(text, 0)
+    except ValueError:
+        raise HalError(f"motmod: {name}={text}: an integer is needed") from None
+
+
+def periods_of(args: dict) -> dict:
+    """The three periods in ns; HalError where they do not divide each other."""
+    periods = {name: integer(name, args.get(name, str(default))) for name, default in PERIODS.items()}
+    base, servo, traj = periods["base_period_nsec"], periods["servo_period_nsec"], periods["traj_period_nsec"]
+    if not 10_000 <= servo <= 1_000_000_000:
+        raise HalError(f"motmod: servo_period_nsec={servo}: 10000 to 1000000000 are allowed")
+    if base and not 1000 <= base <= servo:
+        raise HalError(f"motmod: base_period_nsec={base}: 0, or 1000 to servo_period_nsec={servo}, are allowed")
+    if traj and traj < servo:
+        raise HalError(f"motmod: traj_period_nsec={traj}: 0, or at least servo_period_nsec={servo}, are allowed")
+    return periods
+
+
+def renamed_pins(args: dict, numbers: dict) -> dict:
+    """Pin names that ``names_din=coolant,door`` and its like give; they also set the number of such pins."""
+    renamed = {}
+    lists = {key: [n for n in args[key].split(",") if n] for key in NAME_LISTS if key in args}
+    if "names_din" in lists or "names_dout" in lists:
+        numbers["num_dio"] = max(len(lists.get("names_din", [])), len(lists.get("names_dout", [])))
+    if "names_ain" in lists or "names_aout" in lists:
+        numbers["num_aio"] = max(len(lists.get("names_ain", [])), len(lists.get("names_aout", [])))
+    if "names_misc_errors" in lists:
+        numbers["num_misc_error"] = len(lists["names_misc_errors"])
+    for key, stem, prefix in (
+        ("names_din", "digital-in", "din"),
+        ("names_dout", "digital-out", "dout"),
+        ("names_ain", "analog-in", "ain"),
+        ("names_aout", "analog-out", "aout"),
+        ("names_misc_errors", "misc-error", "err"),
+    ):
+        for n, name in enumerate(lists.get(key, [])):
+            renamed[f"motion.{stem}-{n:02d}"] = f"motion.{prefix}-{name}"
+    return renamed
+
+
+def load(host, args: dict) -> None:
+    """``loadrt motmod``: needs a kinematics, makes the threads that its periods ask for."""
+    known = (*LIMITS, *PERIODS, *NAME_LISTS, *IGNORED)
+    for name in args:
+        if name not in known:
+            raise HalError(f"motmod: unknown argument {name}; known: {', '.join(known)}")
+    kinematics = host.require("kinematics")
+    if not isinstance(kinematics, KinematicsModule):
+        raise HalError("motmod: what was loaded as kinematics is none")
+    periods = periods_of(args)
+    numbers = {name: integer(name, args[name]) for name in LIMITS if name in args}
+    renamed = renamed_pins(args, numbers)
+    comp = host.component("motmod")
+    module = Motmod(kinematics, periods["servo_period_nsec"] * 1e-9, **numbers)
+    comp.keep(module)
+    module.connect()
+    comp.on_unload(module.disconnect)
+    module.bind(comp, renamed)
+    if periods["base_period_nsec"]:
+        host.thread("base-thread", periods["base_period_nsec"])
+    module.functions(comp)
+    host.thread("servo-thread", periods["servo_period_nsec"])
+    comp.ready()
