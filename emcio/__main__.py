@@ -7,16 +7,15 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from emcio.controller import IoChannels, IoController
 from emcio.pins import make_component
 from emcio.sources import FileTools, NoTools, ToolSource
 from emcio.toolstore import ToolStore
 from nml.channel import Channel
+from nml.config import NmlConfig
 from nml.errors import ConfigError, PyemcError
 from nml.inifile import IniFile
-from nml.nmlfile import NmlConfig
 
 DEFAULT_CYCLE_S = 0.1
 
@@ -29,6 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.ini:
         print("io: no INI file; give -ini FILE or set INI_FILE_NAME", file=sys.stderr)
         return 1
+    os.environ["INI_FILE_NAME"] = options.ini
     try:
         controller = build(IniFile(options.ini))
     except PyemcError as error:
@@ -54,7 +54,7 @@ def build(ini: IniFile) -> IoController:
     store = ToolStore(ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False))
     source = tool_source(ini)
     source.load(store)
-    config = NmlConfig.from_ini(ini)
+    config = NmlConfig.load()
     channels = IoChannels(
         commands=Channel(config, "toolCmd", process="tool"),
         status=Channel(config, "toolSts", process="tool"),
@@ -69,7 +69,7 @@ def tool_source(ini: IniFile) -> ToolSource:
     name = ini.find("EMCIO", "TOOL_TABLE")
     if not name:
         return NoTools()
-    path = Path(ini.path).resolve().parent / name
+    path = ini.resolve(name)
     if not path.exists():
         place = ini.place("EMCIO", "TOOL_TABLE")
         raise ConfigError(f"[EMCIO]TOOL_TABLE = {name}: there is no such file; an empty one will do", place)

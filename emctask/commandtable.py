@@ -1,0 +1,86 @@
+"""The table of commands: for each message type, who handles it and in which states and modes it is allowed.
+
+    @command(EMC_JOINT_HOME, on=True, modes=MANUAL)
+    def home(task, message): ...
+
+Handlers raise ``Refused`` with a reason; task tells the operator and answers the command with an error. A type that no
+handler claims is refused, too, with the reason that ``refuse`` gave or as unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
+from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.message import Message
+
+if TYPE_CHECKING:
+    from emctask.task import Task
+
+Handler = Callable[["Task", Any], None]
+
+MANUAL = frozenset({Mode.MANUAL})
+MDI = frozenset({Mode.MDI})
+AUTO = frozenset({Mode.AUTO})
+PROGRAMMED = frozenset({Mode.MDI, Mode.AUTO})
+ANY = frozenset(Mode)
+
+STATE_NAMES = {State.ESTOP: "in E-stop", State.ESTOP_RESET: "off", State.OFF: "off", State.ON: "on"}
+MODE_NAMES = {Mode.MANUAL: "manual", Mode.MDI: "MDI", Mode.AUTO: "auto"}
+
+
+class Refused(Exception):
+    """A command cannot be carried out; the text says why, for the operator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a command needs. ``urgent``: it overtakes everything and ends what is being waited for."""
+
+    handler: Handler
+    on: bool
+    modes: frozenset[Mode]
+    idle: bool
+    urgent: bool
+
+
+RULES: dict[int, Rule] = {}
+REFUSALS: dict[int, str] = {}
+
+
+def command(
+    *types: type[Message],
+    on: bool = False,
+    modes: frozenset[Mode] = ANY,
+    idle: bool = False,
+    urgent: bool = False,
+) -> Callable[[Handler], Handler]:
+    """Register a handler. ``on``: only while the machine is on; ``idle``: only while no program or MDI line runs."""
+
+    def register(handler: Handler) -> Handler:
+        for message in types:
+            RULES[message.TYPE_ID] = Rule(handler, on, modes, idle, urgent)
+        return handler
+
+    return register
+
+
+def refuse(types: Iterable[type[Message]], reason: str) -> None:
+    """These commands are known, but not for clients to give; the reason names the way that works."""
+    for message in types:
+        REFUSALS[message.TYPE_ID] = reason
+
+
+def check(rule: Rule, name: str, state: State, mode: Mode, interp: Interp) -> None:
+    """Refused with the reason when a command is not allowed now."""
+    if rule.on and state is not State.ON:
+        raise Refused(f"{name} needs the machine out of E-stop and turned on; it is {STATE_NAMES[state]}")
+    if mode not in rule.modes:
+        allowed = " or ".join(MODE_NAMES[m] for m in sorted(rule.modes))
+        raise Refused(f"{name} can only be done in {allowed} mode; this is {MODE_NAMES[mode]} mode")
+    if rule.idle and interp is not Interp.IDLE:
+        raise Refused(f"{name} can only be done while no program runs; the interpreter is {interp.name.lower()}")

@@ -1,0 +1,92 @@
+"""Task's side of io: sends commands one after the other, each when the one before was echoed, and follows its status.
+
+toolCmd holds a single message, so a command that is not yet taken must not be overwritten; commands wait in line here.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from emctask.layout import image
+from nml import clock
+from nml.channel import Channel
+from nml.emc import EMC_IO_STAT
+from nml.emc.tooltable import EMC_TOOL_TABLE
+from nml.message import Command
+
+DONE, EXEC, ERROR = 1, 2, 3
+DEAD_S = 0.8  # host time without a new status after which io counts as gone
+
+
+class IoClient:
+    """Commands out, status and tool table in."""
+
+    def __init__(self, commands: Channel, status: Channel, table: Channel) -> None:
+        self._commands = commands
+        self._status = status
+        self._table = table
+        self.status = EMC_IO_STAT()
+        self.table = EMC_TOOL_TABLE()
+        self.table_changed = False
+        self.known = False
+        self._line: deque[Command] = deque()
+        self._serial = 0
+        self._base = int(clock.host_now() * 1000) & 0x3FFFFFFF
+
+    def poll(self) -> bool:
+        """Take over a new status and a new tool table, send what may be sent; is there a new status?"""
+        news = self._status.poll_into(image(self.status))
+        self.known |= news
+        if self._table.poll_into(image(self.table)):
+            self.table_changed = True
+        self._advance()
+        return news
+
+    @property
+    def alive(self) -> bool:
+        """Does io still write its status?"""
+        age = self._status.age()
+        return age is not None and age < DEAD_S
+
+    def send(self, command: Command) -> None:
+        """Send a command after those before it."""
+        self._line.append(command)
+        self._advance()
+
+    def send_first(self, *commands: Command) -> None:
+        """Drop what has not been sent yet and send these instead: an abort, an E-stop."""
+        self._line.clear()
+        self._line.extend(commands)
+        self._advance()
+
+    def _advance(self) -> None:
+        while self._line and self.echoed_last:
+            command = self._line.popleft()
+            self._serial += 1
+            command.serial_number = self._base + self._serial
+            self._commands.write(command)
+
+    def reconnected(self) -> None:
+        """Io was gone and is back: what was on the way to it is lost."""
+        self._line.clear()
+        self._serial = 0
+
+    @property
+    def echoed_last(self) -> bool:
+        """Was the command sent last taken?"""
+        return self._serial == 0 or self.status.echo_serial_number == self._base + self._serial
+
+    @property
+    def done(self) -> bool:
+        """Has io taken and finished everything?"""
+        return not self._line and self.echoed_last and self.status.status != EXEC
+
+    @property
+    def failed(self) -> bool:
+        """Did the command that io took last fail?"""
+        return self.echoed_last and self.status.status == ERROR
+
+    def close(self) -> None:
+        """Close the channels."""
+        for channel in (self._commands, self._status, self._table):
+            channel.close()

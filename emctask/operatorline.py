@@ -1,0 +1,59 @@
+"""Texts for the operator: written to emcError, where every display reads them."""
+
+from __future__ import annotations
+
+import logging
+
+from emctask.places import Places
+from nml.channel import Channel
+from nml.emc import EMC_OPERATOR_DISPLAY, EMC_OPERATOR_ERROR, EMC_OPERATOR_TEXT
+from nml.emc.emcmot import EMCMOT_ERROR
+from nml.errors import NmlError
+
+MAX_BYTES = 254
+log = logging.getLogger(__name__)
+
+
+class OperatorLine:
+    """The way to the operator. A full buffer loses the text, but never stops the machine's controller."""
+
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
+        self._number = 0
+
+    def error(self, text: str) -> None:
+        """Something went wrong."""
+        log.error("%s", text)
+        self._write(EMC_OPERATOR_ERROR(id=self._number, error=_cut(text)))
+
+    def text(self, text: str) -> None:
+        """Something the operator asked to know."""
+        self._write(EMC_OPERATOR_TEXT(id=self._number, text=_cut(text)))
+
+    def display(self, text: str) -> None:
+        """Something the operator should know."""
+        self._write(EMC_OPERATOR_DISPLAY(id=self._number, display=_cut(text)))
+
+    def from_motion(self, error: EMCMOT_ERROR, places: Places) -> None:
+        """Forward a text of motion; a move's id becomes the line of the program that asked for it."""
+        text = error.text
+        if error.id:
+            place = places.find(error.id)
+            where = f"line {place.line}" if place and place.line else "the last command"
+            text = text.replace(f"line {error.id}", where)
+        {11: self.error, 12: self.text, 13: self.display}.get(error.kind, self.error)(text)
+
+    def _write(self, message: EMC_OPERATOR_ERROR | EMC_OPERATOR_TEXT | EMC_OPERATOR_DISPLAY) -> None:
+        self._number += 1
+        try:
+            self._channel.write(message)
+        except NmlError as error:
+            log.warning("a text for the operator was lost: %s", error)
+
+    def close(self) -> None:
+        """Close the channel."""
+        self._channel.close()
+
+
+def _cut(text: str) -> str:
+    return text.encode()[:MAX_BYTES].decode(errors="ignore")

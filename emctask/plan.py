@@ -1,0 +1,212 @@
+"""Drives the interpreter: opens programs, reads ahead into the interp list, runs MDI lines, and synchronises.
+
+Reading ahead stops at a full list and at a queue-buster (the interpreter answers EXECUTE_FINISH: probe, M66, tool
+change, ...). After a queue-buster everything queued must be finished and motion and io must stand still; only then the
+interpreter takes over the state of the world and reads on. So the same program gives the same result every time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from emctask.canon import TaskCanon
+from emctask.places import Modes
+from nml import clock
+from nml.errors import InterpError, PyemcError
+from nml.inifile import IniFile
+from rs274ngc.interp import (
+    INTERP_ENDFILE,
+    INTERP_EXECUTE_FINISH,
+    INTERP_EXIT,
+    Interpreter,
+)
+
+if TYPE_CHECKING:
+    from emctask.sequencer import Sequencer
+
+SLICE_S = 0.004  # host time that reading ahead may take before task looks at its other duties
+BLOCKS_PER_LOOK = 32  # blocks between two looks at the clock
+
+
+class Source(Enum):
+    """Where blocks come from."""
+
+    NOTHING = auto()
+    PROGRAM = auto()
+    MDI = auto()
+
+
+class Plan:
+    """The interpreter and what it is doing."""
+
+    def __init__(self, ini: IniFile, canon: TaskCanon, sequencer: Sequencer) -> None:
+        self.canon = canon
+        self.sequencer = sequencer
+        self.interp = Interpreter(canon, ini)
+        self.interp.init()
+        self.source = Source.NOTHING
+        self.waiting_for_synch = False
+        self.at_end = False
+        self.must_synch = True
+        self.file = ""
+        self.start_line = 0
+        self._modal_version = -1
+        self._modes = Modes((), (), ())
+        self.interpreter_code = 0
+
+    # --- Programs
+
+    def open(self, path: str) -> None:
+        """Load a program; InterpError or ConfigError when it cannot be read."""
+        self.interp.close()
+        self.file = ""
+        self.interp.open(path)
+        self.file = str(path)
+
+    def close(self) -> None:
+        """Forget the loaded program."""
+        self.interp.close()
+        self.file = ""
+
+    @property
+    def open_file(self) -> bool:
+        """Is a program loaded?"""
+        return bool(self.file)
+
+    def start(self, line: int = 0) -> None:
+        """Begin to read the loaded program, from its first line or from ``line``."""
+        self.interp.close()
+        self.interp.open(self.file)
+        self._begin(Source.PROGRAM)
+
+    def start_mdi(self, text: str) -> None:
+        """Execute one line; InterpError when it is wrong."""
+        self._begin(Source.MDI)
+        self._execute(lambda: self.interp.execute_mdi(text))
+        if not self.waiting_for_synch and not self.interp.call_level:
+            self.at_end = True
+
+    def _begin(self, source: Source) -> None:
+        self.source = source
+        self.at_end = False
+        self.waiting_for_synch = False
+        self.interpreter_code = 0
+
+    @property
+    def busy(self) -> bool:
+        """Is there something left to read?"""
+        return self.source is not Source.NOTHING and not self.at_end
+
+    @property
+    def active(self) -> bool:
+        """Is a program or an MDI line under way, be it only in the machine?"""
+        return self.source is not Source.NOTHING
+
+    def read_ahead(self) -> None:
+        """Read until the list is full, the slice is over, or something must be waited for; InterpError ends it."""
+        if not self.busy:
+            return
+        if self.waiting_for_synch:
+            if not self._quiet():
+                return
+            self.synch()
+            if self.source is Source.MDI and not self.interp.call_level:
+                self.at_end = True
+                return
+        until = clock.host_now() + SLICE_S
+        while not self.canon.queue.full:
+            for _ in range(BLOCKS_PER_LOOK):
+                if not self._read_block():
+                    return
+            if clock.host_now() > until:
+                return
+
+    def _read_block(self) -> bool:
+        """Read and execute one block; False when reading must stop."""
+        interp = self.interp
+        if interp.read() == INTERP_ENDFILE:
+            self._reached_end()
+            return False
+        self._execute(interp.execute)
+        if self.source is Source.MDI and not interp.call_level and not self.waiting_for_synch:
+            self.at_end = True
+        return not (self.at_end or self.waiting_for_synch)
+
+    def _execute(self, execute: Callable[[], int]) -> None:
+        canon, interp = self.canon, self.interp
+        canon.begin_block(interp.line, self.file if self.source is Source.PROGRAM else "", interp.call_level)
+        code = execute()
+        if code == INTERP_EXIT:
+            self._reached_end()
+        elif code == INTERP_EXECUTE_FINISH:
+            canon.flush()
+            self.waiting_for_synch = True
+        canon.end_block(self.modes)
+
+    @property
+    def modes(self) -> Modes:
+        """The interpreter's active codes."""
+        interp = self.interp
+        if interp.modal_version != self._modal_version:
+            self._modal_version = interp.modal_version
+            self._modes = Modes(interp.active_g_codes(), interp.active_m_codes(), interp.active_settings())
+        return self._modes
+
+    def _reached_end(self) -> None:
+        self.canon.flush()
+        self.at_end = True
+
+    def stop_reading(self) -> None:
+        """The rest of the program cannot be read; what is queued will still be done."""
+        self.canon.flush()
+        self.at_end = True
+        self.waiting_for_synch = False
+
+    def finish(self) -> None:
+        """Everything that was read is done: nothing is under way any more."""
+        self.source = Source.NOTHING
+        self.waiting_for_synch = False
+
+    # --- Agreement with the machine
+
+    def _quiet(self) -> bool:
+        canon = self.canon
+        return self.sequencer.idle and canon.motion.settled and canon.io.done
+
+    def synch(self) -> None:
+        """The interpreter takes over position, tool and spindle from the machine, which must stand still."""
+        self.interp.synch()
+        self.waiting_for_synch = False
+        self.must_synch = False
+
+    def abort(self) -> None:
+        """Unwind everything; the interpreter must synchronise before it is used again."""
+        self.canon.forget()
+        self.interp.abort()
+        self.canon.forget()
+        self.finish()
+        self.must_synch = True
+
+    def reset(self) -> None:
+        """Back to the state after the start."""
+        self.interp.reset()
+        self.must_synch = True
+
+    def startup(self, code: str) -> None:
+        """Run [RS274NGC]RS274NGC_STARTUP_CODE; PyemcError when it is wrong."""
+        if code:
+            self.interp.execute_mdi(code)
+        self.canon.flush()
+
+    def save_parameters(self) -> None:
+        """Write the parameter file, if there is one."""
+        self.interp.save_parameters()
+
+    def describe(self, error: PyemcError) -> str:
+        """An interpreter's error for the operator: ``file:line:column: message``."""
+        if isinstance(error, InterpError) and error.place is None and self.source is Source.PROGRAM:
+            return f"{Path(self.file).name}:{self.interp.line}: {error.message}"
+        return str(error)

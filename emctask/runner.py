@@ -1,0 +1,202 @@
+"""Runs programs and MDI lines: start, pause, resume, step, the end, and abort with everything agreed afterwards.
+
+The runner owns ``interp_state``. A program or MDI line begins when the machine stands still and the interpreter has
+taken over where it stands; it is over when everything it queued is done. An abort empties all queues at once, and as
+soon as motion stands the interpreter takes over the place where that is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from emctask.saver import Saver
+from emctask.sequencer import ExecutionError
+from nml.emc import EMC_TOOL_ABORT
+from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
+from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.emcmot import MotCommand
+from nml.errors import PyemcError
+
+if TYPE_CHECKING:
+    from emctask.task import Task
+
+
+class Runner:
+    """See the module."""
+
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._begin: Callable[[], None] | None = None
+        self._pending_error = ""
+        self.stepping = False
+        self.ended = False
+        self.saver = Saver(task.plan.save_parameters)
+
+    def save_parameters(self) -> None:
+        """Write the parameter file soon."""
+        self.saver.request()
+
+    # --- Start
+
+    def run_program(self, line: int) -> None:
+        """Start the loaded program; ``line`` above 1 skips what comes before."""
+        self.ended = False
+        self._start(lambda: self._task.plan.start(line))
+
+    def run_mdi(self, text: str) -> None:
+        """Queue an MDI line; it runs at once if nothing else does."""
+        self._task.mdi_queue.append(text)
+
+    def _start(self, begin: Callable[[], None]) -> None:
+        self._begin = begin
+        self._set(Interp.READING)
+
+    def _set(self, state: Interp) -> None:
+        self._task.interp_state = state
+
+    # --- Each cycle
+
+    def advance(self) -> None:
+        """Go on with whatever is under way."""
+        task = self._task
+        if self.saver.failure:
+            task.operator.error(self.saver.take_failure())
+        self._synchronise_when_quiet()
+        if self._begin is None and task.mdi_queue and not task.plan.active and not task.paused:
+            text = task.mdi_queue.popleft()
+            task.mdi_text = text
+            self._start(lambda: task.plan.start_mdi(text))
+        if self._begin is not None and not task.plan.must_synch:
+            begin, self._begin = self._begin, None
+            self._guard(begin)
+        if task.plan.active and not task.paused:
+            self._guard(task.plan.read_ahead)
+            if not task.plan.busy or task.plan.waiting_for_synch:
+                self._set(Interp.WAITING)
+            else:
+                self._set(Interp.READING)
+        self._step()
+        try:
+            task.sequencer.execute()
+        except ExecutionError as error:
+            self.abort(Reason.TASK_EXEC_ERROR)
+            task.fail(str(error))
+        self._finish_when_done()
+
+    def _guard(self, work: Callable[[], None]) -> None:
+        """Let the interpreter work; an error ends the program after the blocks before it are done."""
+        task = self._task
+        try:
+            work()
+        except PyemcError as error:
+            task.operator.error(task.plan.describe(error))
+            task.plan.stop_reading()
+            self._pending_error = str(error)
+
+    def _synchronise_when_quiet(self) -> None:
+        task = self._task
+        if task.plan.must_synch and not task.plan.active and task.sequencer.idle and self._quiet():
+            task.plan.synch()
+
+    def _quiet(self) -> bool:
+        return self._task.at_rest and self._task.io.done
+
+    def _finish_when_done(self) -> None:
+        task = self._task
+        plan = task.plan
+        if not plan.active or plan.busy or plan.waiting_for_synch or task.paused:
+            return
+        if not (task.sequencer.idle and self._quiet()):
+            return
+        error, self._pending_error = self._pending_error, ""
+        if error:
+            self.abort(Reason.INTERPRETER_ERROR)
+            task.failed = True
+            return
+        plan.finish()
+        self.stepping = False
+        task.canon.places.forget()
+        self.save_parameters()
+        self._set(Interp.READING if task.mdi_queue else Interp.IDLE)
+
+    # --- Pause, resume, step
+
+    def pause(self) -> None:
+        """Motion holds, and nothing new begins."""
+        task = self._task
+        if task.paused or (task.interp_state is Interp.IDLE and task.motion.settled):
+            return
+        task.motion.send(MotCommand.PAUSE)
+        self._hold()
+
+    def pause_at_stop(self) -> None:
+        """The program stopped itself: motion stands already."""
+        self._hold()
+
+    def _hold(self) -> None:
+        task = self._task
+        task.paused = True
+        task.sequencer.held = True
+        if task.interp_state is not Interp.IDLE:
+            self._set(Interp.PAUSED)
+
+    def resume(self) -> None:
+        """Go on after a pause, a stop of the program, or in the middle of stepping."""
+        task = self._task
+        self.stepping = False
+        task.sequencer.only_block = None
+        self._release()
+        task.motion.send(MotCommand.RESUME)
+
+    def _release(self) -> None:
+        task = self._task
+        task.paused = False
+        task.sequencer.held = False
+        if task.plan.active:
+            self._set(Interp.READING)
+
+    def step(self) -> None:
+        """Go on to the end of one block: of the moves that motion holds, or of the next block in the list."""
+        task = self._task
+        if task.motion.status.paused and task.motion.status.depth:
+            task.motion.send(MotCommand.STEP)
+            return
+        if task.motion.status.paused:
+            task.motion.send(MotCommand.RESUME)
+        self.stepping = True
+        task.sequencer.only_block = None
+        self._release()
+
+    def _step(self) -> None:
+        task = self._task
+        if not self.stepping or task.paused:
+            return
+        sequencer, queue = task.sequencer, task.canon.queue
+        if sequencer.only_block is None:
+            if queue:
+                sequencer.only_block = queue[0][3]
+            return
+        over = not queue or queue[0][3] != sequencer.only_block
+        if over and sequencer.waits_for_nothing and self._quiet() and (queue or task.plan.busy):
+            sequencer.only_block = None
+            self._hold()
+
+    # --- Abort
+
+    def abort(self, reason: Reason) -> None:
+        """Stop everything now; interpreter, motion and io agree again as soon as motion stands."""
+        task = self._task
+        self._begin = None
+        self._pending_error = ""
+        self.stepping = False
+        task.paused = False
+        task.mdi_queue.clear()
+        task.sequencer.abort()
+        task.motion.send(MotCommand.ABORT)
+        for spindle in range(len(task.config.spindles)):
+            task.motion.send(MotCommand.SPINDLE_OFF, spindle=spindle)
+        task.io.send_first(EMC_TOOL_ABORT(reason=reason))
+        task.plan.abort()
+        task.sequencer.abort()
+        self._set(Interp.IDLE)

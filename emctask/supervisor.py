@@ -1,0 +1,66 @@
+"""Watches motion and io: E-stop, a machine that switched itself off, refused commands, partners that fell silent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from emctask import transitions
+from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
+from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+
+if TYPE_CHECKING:
+    from emctask.task import Task
+
+
+class Supervisor:
+    """Looked at once a cycle."""
+
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._lost: set[str] = set()
+
+    def look(self) -> None:
+        """React to whatever changed since the last cycle."""
+        task = self._task
+        self._partners()
+        for error in task.motion.errors():
+            task.operator.from_motion(error, task.canon.places)
+        self._refusals()
+        self._state()
+
+    def _partners(self) -> None:
+        task = self._task
+        for name, partner in (("motion", task.motion), ("io", task.io)):
+            if partner.alive:
+                if name in self._lost:
+                    self._lost.discard(name)
+                    partner.reconnected()
+                    task.operator.error(f"{name} answers again; reset the E-stop to go on")
+            elif name not in self._lost:
+                self._lost.add(name)
+                transitions.emergency_stop(task, Reason.MOTION_OR_IO_RCS_ERROR)
+                task.fail(f"{name} does not answer any more; the machine is in E-stop")
+
+    def _refusals(self) -> None:
+        task = self._task
+        if not task.motion.refused():
+            return
+        if task.plan.active:
+            task.runner.abort(Reason.MOTION_OR_IO_RCS_ERROR)
+        task.failed = True
+
+    def _state(self) -> None:
+        task = self._task
+        state = self._seen()
+        if state is task.state:
+            return
+        before, task.state = task.state, state
+        if before is State.ON:
+            transitions.left_on(task, state)
+
+    def _seen(self) -> State:
+        """The state as motion and io show it."""
+        task = self._task
+        if self._lost or task.io.status.aux.estop:
+            return State.ESTOP
+        return State.ON if task.motion.enabled else State.ESTOP_RESET

@@ -1,0 +1,218 @@
+"""The task controller: one cycle that takes commands, supervises motion and io, runs programs, and reports.
+
+``Task`` holds the state of the whole machine; what a command does is in the ``handlers_*`` modules, state and mode
+transitions in ``emctask.transitions``, running and stopping programs in ``emctask.runner``. The process sleeps on the
+command buffer, so a command is taken at once; while something is under way it wakes every CYCLE_TIME as well.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from emctask import handlers, transitions
+from emctask.canon import TaskCanon
+from emctask.commandtable import REFUSALS, RULES, Refused, check
+from emctask.config import MachineConfig
+from emctask.ioclient import IoClient
+from emctask.motion import MotionClient
+from emctask.operatorline import OperatorLine
+from emctask.plan import Plan
+from emctask.runner import Runner
+from emctask.sequencer import Sequencer
+from emctask.status import StatusWriter
+from emctask.supervisor import Supervisor
+from nml import clock
+from nml.channel import Channel
+from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
+from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.inifile import IniFile
+from nml.message import Command, Message
+
+log = logging.getLogger(__name__)
+
+DONE, EXEC, ERROR = 1, 2, 3
+IDLE_WAIT_S = 0.01  # host time between two cycles when nothing is under way
+SHORTEST_WAIT_S = 0.0005  # host time
+
+assert handlers.LOADED
+
+
+@dataclass(slots=True)
+class Expectation:
+    """Something a command set off and must see through before the next command is taken."""
+
+    arrived: Callable[[], bool]
+    deadline: float  # host time
+    complaint: str
+
+
+class Task:
+    """See the module."""
+
+    def __init__(
+        self,
+        config: MachineConfig,
+        ini: IniFile,
+        commands: Channel,
+        motion: MotionClient,
+        io: IoClient,
+        status: StatusWriter,
+        operator: OperatorLine,
+    ) -> None:
+        self.config = config
+        self.commands = commands
+        self.motion = motion
+        self.io = io
+        self.status = status
+        self.operator = operator
+        self.running = True
+        self.state = State.ESTOP
+        self.mode = Mode.MANUAL
+        self.interp_state = Interp.IDLE
+        self.paused = False
+        self.optional_stop = True
+        self.block_delete = True
+        self.input_timeout = False
+        self.offsets: dict[str, object] = {}
+        self.mdi_queue: deque[str] = deque()
+        self.mdi_text = ""
+        self.debug = config.debug
+        self.echo = 0
+        self.command_type = 0
+        self.failed = False
+        self.canon = TaskCanon(config, motion, io)
+        self.sequencer = Sequencer(config, self.canon.queue, motion, io, self)
+        self.plan = Plan(ini, self.canon, self.sequencer)
+        self.runner = Runner(self)
+        self.supervisor = Supervisor(self)
+        self._waiting: deque[Message] = deque()
+        self._expected: Expectation | None = None
+
+    # --- The cycle
+
+    def run(self, stopped: Callable[[], bool]) -> None:
+        """Work until ``stopped`` or told to halt; then switch the machine off and save what must be kept."""
+        while self.running and not stopped():
+            self.cycle()
+            self.commands.wait(self._wait_s())
+        transitions.shut_down(self)
+        self.status.write(self)
+
+    def cycle(self) -> None:
+        """Once around: look, obey, go on, report."""
+        self.motion.poll()
+        self.io.poll()
+        self.supervisor.look()
+        self._read_commands()
+        self._obey()
+        self.runner.advance()
+        self.motion.beat()
+        self.status.write(self)
+
+    def _wait_s(self) -> float:
+        if self.rcs_status != EXEC and not self.mdi_queue and not self._waiting:
+            return IDLE_WAIT_S
+        return max(self.config.cycle_s / clock.speed(), SHORTEST_WAIT_S) if self.config.cycle_s > 0 else SHORTEST_WAIT_S
+
+    @property
+    def busy(self) -> bool:
+        """Is something under way that a command set off?"""
+        return (
+            self._expected is not None
+            or self.interp_state is not Interp.IDLE
+            or bool(self.mdi_queue)
+            or not self.sequencer.idle
+            or not self.io.done
+            or not self.at_rest
+        )
+
+    @property
+    def busy_with_program(self) -> bool:
+        """Is a program or an MDI line under way or about to begin?"""
+        return self.interp_state is not Interp.IDLE or bool(self.mdi_queue) or not self.sequencer.idle
+
+    @property
+    def at_rest(self) -> bool:
+        """Has motion taken and finished everything? A machine that is off cannot be in position."""
+        return self.motion.settled or (self.motion.echoed and not self.motion.enabled)
+
+    @property
+    def rcs_status(self) -> int:
+        """How the last command stands: done, executing, error."""
+        return ERROR if self.failed else EXEC if self.busy else DONE
+
+    # --- Commands
+
+    def _read_commands(self) -> None:
+        while (message := self.commands.read()) is not None:
+            self._waiting.append(message)
+
+    def _obey(self) -> None:
+        if any(RULES[m.TYPE_ID].urgent for m in self._waiting if m.TYPE_ID in RULES):
+            self._expected = None
+        while self._waiting:
+            if self._expected is not None and not self._has_arrived(self._expected):
+                return
+            self._take(self._waiting.popleft())
+        if self._expected is not None:
+            self._has_arrived(self._expected)
+
+    def _has_arrived(self, expected: Expectation) -> bool:
+        if expected.arrived():
+            self._expected = None
+            return True
+        if clock.host_now() < expected.deadline:
+            return False
+        self._expected = None
+        self.fail(expected.complaint)
+        return True
+
+    def expect(self, arrived: Callable[[], bool], complaint: str, timeout_s: float | None = None) -> None:
+        """The command being handled is done when ``arrived`` says so, and fails with ``complaint`` after a while."""
+        deadline = clock.host_now() + (timeout_s or self.config.comm_timeout_s)
+        self._expected = Expectation(arrived, deadline, complaint)
+
+    def _take(self, message: Message) -> None:
+        self.failed = False
+        self.command_type = message.TYPE_ID
+        if isinstance(message, Command):
+            self.echo = message.serial_number
+        name = type(message).__name__
+        rule = RULES.get(message.TYPE_ID)
+        try:
+            if rule is None:
+                reason = REFUSALS.get(message.TYPE_ID, "this controller does not know it")
+                raise Refused(f"{name} is refused: {reason}")
+            check(rule, name, self.state, self.mode, self.interp_state)
+            log.debug("%r", message)
+            rule.handler(self, message)
+        except Refused as refusal:
+            self.fail(str(refusal))
+
+    def fail(self, text: str) -> None:
+        """Tell the operator; the command that was given last has failed."""
+        self.failed = True
+        self.operator.error(text)
+
+    # --- What the sequencer calls
+
+    def pause_here(self) -> None:
+        """M0, M1, M60: the program waits for the operator."""
+        self.runner.pause_at_stop()
+
+    def program_ended(self) -> None:
+        """M2, M30."""
+        self.runner.ended = True
+
+    def show_text(self, text: str) -> None:
+        """(MSG, ...)."""
+        self.operator.display(text)
+
+    def close(self) -> None:
+        """Close every channel."""
+        for part in (self.commands, self.motion, self.io, self.status, self.operator):
+            part.close()
