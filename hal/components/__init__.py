@@ -11,8 +11,12 @@ from importlib import import_module
 
 from hal.components.declare import DECLARED
 
-GROUPS = ("logic", "arithmetic")
-MODULES = ("threads",)
+GROUPS = ("logic", "arithmetic", "filters", "timing", "select", "convert", "simulate")
+MODULES = {
+    "threads": ("threads", "load"),
+    "sampler": ("fifo", "load_sampler"),
+    "streamer": ("fifo", "load_streamer"),
+}
 
 
 def _import_groups() -> None:
@@ -23,7 +27,8 @@ def _import_groups() -> None:
 def find(name: str) -> Callable[..., None] | None:
     """What loads the component of that name; None where there is none."""
     if name in MODULES:
-        load: Callable[..., None] = import_module(f"hal.components.{name}").load
+        module, function = MODULES[name]
+        load: Callable[..., None] = getattr(import_module(f"hal.components.{module}"), function)
         return load
     if name not in DECLARED:
         _import_groups()

@@ -87,13 +87,15 @@ class Declaration:
     uses_fp: bool = True
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
+    sizes: bool = False  # `counted_by` takes a list, a personality for each instance
+    state: tuple[int, ...] = ()  # machine words behind the pins
 
     def load(self, host: Host, args: dict[str, str]) -> None:
         """``loadrt``: make every instance."""
         self._check(args)
         comp = host.component(self.name)
         memories = []
-        personalities = _numbers(self.name, args.get("personality", ""))
+        personalities = _numbers(self.name, args, self.counted_by if self.sizes else "personality")
         for i, instance in enumerate(self.instances(args)):
             personality = personalities[i] if i < len(personalities) else self.personality or 0
             memories.append(self._instance(comp, instance, personality))
@@ -112,13 +114,10 @@ class Declaration:
         """The instances' names."""
         if "names" in args:
             return [name for name in args["names"].split(",") if name]
-        text = args.get(self.counted_by, str(self.default_count))
-        try:
-            count = int(text, 0)
-        except ValueError:
-            count = 0
-        if count < 1:
-            raise HalError(f"{self.name}: {self.counted_by}={text}: a whole number from 1 would be right")
+        counts = _numbers(self.name, args, self.counted_by) or [self.default_count]
+        count = len(counts) if self.sizes else counts[0]
+        if min(counts) < 1 or (len(counts) > 1 and not self.sizes):
+            raise HalError(f"{self.name}: {self.counted_by}={args[self.counted_by]}: a number from 1 would be right")
         return [f"{self.prefix}.{i}" for i in range(count)]
 
     @property
@@ -135,6 +134,8 @@ class Declaration:
                 item = make(f"{instance}{self.separator}{name}", entry.type, entry.dir, entry.default)
                 memory.put(offset + i * WORD, item.address)
             offset += entry.count * WORD
+        for i, word in enumerate(self.state):
+            memory.put(offset + i * WORD, word)
         for suffix, code in self.functions.items():
             name = f"{instance}.{suffix}" if suffix else instance
             comp.function(name, code, memory.address, uses_fp=self.uses_fp)
@@ -153,11 +154,12 @@ class Declaration:
             comp.function(f"{self.prefix}.{suffix}", code, everyone.address, uses_fp=self.uses_fp)
 
 
-def _numbers(component: str, text: str) -> list[int]:
+def _numbers(component: str, args: dict[str, str], key: str) -> list[int]:
+    """The numbers of a list with commas; none where it is not given."""
     try:
-        return [int(word, 0) for word in text.split(",") if word]
+        return [int(word, 0) for word in args.get(key, "").split(",") if word]
     except ValueError:
-        raise HalError(f"{component}: personality={text}: whole numbers with commas would be right") from None
+        raise HalError(f"{component}: {key}={args[key]}: whole numbers with commas would be right") from None
 
 
 def declare(name: str, doc: str, size: int, entries: list[Entry], functions: dict[str, int], **more: Any) -> None:
