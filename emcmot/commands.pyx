@@ -119,6 +119,7 @@ from emcmot.handlers cimport (
     resume,
     reverse,
     set_joint_comp,
+    set_motor_offset,
     set_num_joints,
     set_num_spindles,
     set_probe_err_inhibit,
@@ -378,7 +379,7 @@ command(MotCommand_SET_JOINT_VEL_LIMIT, JOINT, set_parameters, "Largest velocity
 command(MotCommand_SET_JOINT_ACC_LIMIT, JOINT, set_parameters, "Largest acceleration.")
 command(MotCommand_SET_JOINT_HOMING_PARAMS, JOINT, set_parameters, "The HOME_* entries.")
 command(MotCommand_UPDATE_JOINT_HOMING_PARAMS, JOINT, set_parameters, "HOME_OFFSET, HOME and HOME_SEQUENCE only.")
-command(MotCommand_SET_JOINT_MOTOR_OFFSET, STILL_OFF | JOINT, set_parameters, "Motor position at joint position 0.")
+command(MotCommand_SET_JOINT_MOTOR_OFFSET, STILL_OFF | JOINT, set_motor_offset, "Motor position at joint position 0.")
 command(MotCommand_SET_JOINT_COMP, JOINT, set_joint_comp, "One more point of the screw compensation.")
 command(MotCommand_SET_AXIS_POSITION_LIMITS, AXIS, set_parameters, "Soft limits.")
 command(MotCommand_SET_AXIS_VEL_LIMIT, AXIS, set_parameters, "Largest velocity, and that of its external offset.")

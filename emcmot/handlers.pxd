@@ -33,6 +33,7 @@ cdef int enable_amplifier(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int disable_amplifier(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int set_num_joints(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int set_num_spindles(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
+cdef int set_motor_offset(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int set_joint_comp(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int set_probe_err_inhibit(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil
 cdef int spindle_on(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil

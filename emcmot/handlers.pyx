@@ -25,7 +25,7 @@ from emcmot._messages cimport (
     MotionState_FREE,
     MotionState_TELEOP,
 )
-from emcmot.homing cimport HOME_IDLE, SEQUENCE_IDLE, home_all, home_joint, update_homed
+from emcmot.homing cimport HOME_IDLE, SEQUENCE_IDLE, home_all, home_joint, rename_position, update_homed
 from emcmot.jog cimport (
     JOG_ABSOLUTE,
     JOG_CONTINUOUS,
@@ -300,6 +300,13 @@ cdef int set_num_spindles(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
         snprintf(report(m), TEXT_SIZE, b"can't set the number of spindles to %d: motmod has %d", c.spindle, m.max_spindles)
         return MotCommandStatus_INVALID_PARAMS
     m.num_spindles = c.spindle
+    return MotCommandStatus_OK
+
+
+cdef int set_motor_offset(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
+    """Another name for the place where the joint stands; the motor does not move."""
+    cdef Joint* joint = &m.joint[c.joint]
+    rename_position(joint, joint.motor_offset - c.motor_offset)
     return MotCommandStatus_OK
 
 

@@ -57,4 +57,5 @@ cdef int home_joint(Motion* m, int number) noexcept nogil          # 0, or -1 re
 cdef void home_all(Motion* m) noexcept nogil
 cdef void cancel_homing(Motion* m) noexcept nogil
 cdef void update_homed(Motion* m) noexcept nogil
+cdef void rename_position(Joint* joint, double shift) noexcept nogil
 cdef void take_index(Joint* joint) noexcept nogil

@@ -22,7 +22,6 @@ from emcmot._messages cimport (
     MotCommand_SET_JOINT_HOMING_PARAMS,
     MotCommand_SET_JOINT_MAX_FERROR,
     MotCommand_SET_JOINT_MIN_FERROR,
-    MotCommand_SET_JOINT_MOTOR_OFFSET,
     MotCommand_SET_JOINT_POSITION_LIMITS,
     MotCommand_SET_JOINT_VEL_LIMIT,
     MotCommand_SET_MAX_FEED_OVERRIDE,
@@ -167,7 +166,6 @@ of_joint(MotCommand_SET_JOINT_MIN_FERROR, NOT_NEGATIVE, &C.minFerror, &J.min_fer
 of_joint(MotCommand_SET_JOINT_MAX_FERROR, NOT_NEGATIVE, &C.maxFerror, &J.max_ferror)
 of_joint(MotCommand_SET_JOINT_VEL_LIMIT, POSITIVE, &C.vel, &J.vel_limit)
 of_joint(MotCommand_SET_JOINT_ACC_LIMIT, POSITIVE, &C.acc, &J.acc_limit)
-of_joint(MotCommand_SET_JOINT_MOTOR_OFFSET, ANY, &C.motor_offset, &J.motor_offset)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.offset, &J.home.offset)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.home, &J.home.home)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.home_final_vel, &J.home.final_vel)
