@@ -18,7 +18,7 @@ class SetupSession(Session):
     """A HAL session whose first error ends it."""
 
     def report(self, error: Exception) -> None:
-        raise HalFileError(f"{self.place}: {error}")
+        raise HalFileError(f"{self.place}: {error}") from error
 
 
 def set_up(session: Session, ini: IniFile, folder: Path, files: list[Path]) -> None:

@@ -64,7 +64,7 @@ def _launch(options: argparse.Namespace) -> int:
     """Run the machine to its end; problems of the user's making become one line."""
     from linuxcnc._connection import error
     from linuxcnc.configuration import Configuration
-    from linuxcnc.machine import Machine, to_stderr
+    from linuxcnc.machine import END_SIGNALS, Machine, to_stderr
     from linuxcnc.program import ProgramError, run_program
     from nml.errors import PyemcError
 
@@ -74,12 +74,12 @@ def _launch(options: argparse.Namespace) -> int:
             _readable(options.run)
         else:
             configuration.display()
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in END_SIGNALS:
             signal.signal(number, _stop)
         with Machine(configuration, to_stderr) as machine:
             machine.start()
             if options.run is not None:
-                run_program(machine, options.run.resolve())
+                run_program(machine.check, options.run.resolve())
                 return 0
             return _follow_display(machine)
     except (PyemcError, ProgramError, error) as reason:
@@ -107,9 +107,7 @@ def _follow_display(machine: Machine) -> int:
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
-    """Ends the main loop; later signals are ignored, the machine is being stopped already."""
-    for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(other, signal.SIG_IGN)
+    """Ends the main loop."""
     raise Stopped(number)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -20,6 +21,7 @@ from nml.channel import Channel
 from nml.errors import PyemcError
 
 START_TIMEOUT = 15.0  # host seconds until a process must be ready
+END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # what asks the launcher to end
 POLL = 0.002  # host seconds between looks at a condition
 
 
@@ -38,11 +40,12 @@ class Child:
 
     def new_output(self) -> list[str]:
         """Whole lines written since the last call."""
-        data = self.log.read_bytes() if self.log.exists() else b""
+        with self.log.open("rb") as file:
+            file.seek(self.shown)
+            data = file.read()
         end = len(data) if self.process.poll() is not None else data.rfind(b"\n") + 1
-        text = data[self.shown : end].decode(errors="replace")
-        self.shown = max(end, self.shown)
-        return [line for line in text.splitlines() if line.strip()]
+        self.shown += end
+        return [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
 
 
 class Machine:
@@ -163,7 +166,9 @@ class Machine:
     # --- stopping --------------------------------------------------------------------------------------------------
 
     def stop(self) -> None:
-        """Bring the machine to rest, end every process, remove every trace."""
+        """Bring the machine to rest, end every process, remove every trace; no signal interrupts it."""
+        for number in END_SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
         records = self._instance.recorded()
         problem = takedown.bring_to_rest(records, self._nml_file)
         if problem:

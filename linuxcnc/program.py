@@ -6,16 +6,13 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import linuxcnc
 from nml import clock
 from nml.channel import Channel
 from nml.emc.emcmot import EMCMOT_STATUS
 from nml.errors import PyemcError
-
-if TYPE_CHECKING:
-    from linuxcnc.machine import Machine
 
 HOMING_TIMEOUT = 600.0  # controller seconds
 STATE_TIMEOUT = 5.0  # host seconds for E-stop reset, power and mode
@@ -68,8 +65,8 @@ class Progress:
 class Operator:
     """Drives a machine through the client API as a person at the screen would."""
 
-    def __init__(self, machine: Machine, display: Display) -> None:
-        self._machine = machine
+    def __init__(self, check: Callable[[], None], display: Display) -> None:
+        self._check = check
         self._display = display
         self._status = linuxcnc.stat()
         self._command = linuxcnc.command()
@@ -91,7 +88,7 @@ class Operator:
         return ProgramError(errors[0] if errors else f"{doing} was refused")
 
     def _look(self) -> linuxcnc.stat:
-        self._machine.check()
+        self._check()
         self._status.poll()
         return self._status
 
@@ -142,7 +139,7 @@ class Operator:
             self._follow(progress)
             if clock.host_now() >= next_look:
                 next_look = clock.host_now() + LOOK
-                self._machine.check()
+                self._check()
                 self._display.show(progress)
             self._status.wait(LOOK)
             self._status.poll()
@@ -190,13 +187,16 @@ class Operator:
         return max(joint["ferror_highmark"] for joint in status.joint[: status.joints])
 
 
-def run_program(machine: Machine, path: Path) -> None:
-    """Run one program on a started machine and print the summary; ProgramError says why it did not end."""
+def run_program(check: Callable[[], None], path: Path) -> None:
+    """Run one program on a started machine and print the summary; ProgramError says why it did not end.
+
+    ``check`` is called now and then; it raises when a process of the machine is gone.
+    """
     from linuxcnc.progress import make_display
 
     motion = Channel(linuxcnc.nmlfile, "emcmotStatus", "xemc")
     with make_display(path.name) as display:
-        operator = Operator(machine, display)
+        operator = Operator(check, display)
         operator.prepare()
         operator.open(path)
         before = _distance(motion)

@@ -27,6 +27,8 @@ def bring_to_rest(records: list[ProcessRecord], nml_file: str | None) -> str | N
         return None if "task" not in alive else "the realtime host is gone; the motors stopped where they were"
     try:
         motion = Channel(nml_file, "emcmotStatus", "xemc")
+        if motion.age() is None:
+            return None  # motion was never loaded
         stop, off = (_through_task if "task" in alive else _through_motion)(nml_file)
         stop()
         if not _wait_for_rest(motion):
