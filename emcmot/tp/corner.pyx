@@ -22,6 +22,7 @@ cdef double EXACT_KINK = 0.02        # the same in exact-path mode: sharper corn
 cdef double EXACT_TOLERANCE = 1e-5   # lu; rounding of the corner's coordinates that exact-path mode may use
 cdef double SMALLEST_TRIM = 1e-10    # lu
 cdef double SPEED_RESERVE = 1.2      # blends are made for the programmed speed times this
+cdef double ARC_SPAN_ANGLE = 0.03    # rad of an arc in one span of its blend
 cdef double ARC_BLEND_ANGLE = 0.5    # rad of an arc that a blend may take
 cdef double SLIGHT = 0.1             # corners below this difference of tangents cost next to no deviation
 
@@ -148,8 +149,9 @@ cdef int blend_spans(const Segment* a, const Segment* b, const Corner* corner) n
     cdef double unused[AXES]
     cdef double square = 0.0
     cdef int i
+    cdef double bend = fmax(fabs(a.omega), fabs(b.omega * corner.ratio))
     if a.kind == TP_ARC or b.kind == TP_ARC:
-        return ARC_BLEND_SPANS
+        return ARC_BLEND_SPANS + <int>(2.0 * corner.trim * bend / ARC_SPAN_ANGLE)
     derivatives(a, a.length, t1, unused)
     derivatives(b, 0.0, t2, unused)
     for i in range(AXES):

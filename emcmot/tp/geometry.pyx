@@ -47,6 +47,7 @@ cdef void _shape_line(Segment* seg) noexcept nogil:
     cdef int i
     for i in range(AXES):
         delta[i] = seg.end[i] - seg.start[i]
+    seg.omega = seg.growth = 0.0
     seg.unit = UNIT_XYZ
     seg.length = norm(delta, UNIT_XYZ)
     if seg.length < LINEAR_MOTION and norm(delta, UNIT_UVW) > seg.length:
