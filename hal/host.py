@@ -34,6 +34,8 @@ class Server:
         self.listener = listener
         self.host = Host()
         self.running = True
+        self.woken, self.wake = socket.socketpair()  # a signal writes, so that `select` returns at once
+        self.wake.setblocking(False)
         self._lines: dict[socket.socket, bytes] = {}
         self._requests: dict[str, Callable[..., Any]] = {
             "loadrt": self.host.load,
@@ -55,11 +57,11 @@ class Server:
         segment.skip_ids(1)
         try:
             while self.running and os.path.exists("/dev/shm" + shm_name("hal")):
-                ready, _, _ = select.select([self.listener, *self._lines], [], [], SWEEP_SECONDS)
+                ready, _, _ = select.select([self.listener, self.woken, *self._lines], [], [], SWEEP_SECONDS)
                 for source in ready:
                     if source is self.listener:
                         self._lines[source.accept()[0]] = b""
-                    else:
+                    elif source in self._lines:
                         self._receive(source)
                 for name in self.host.hal.reap():
                     print(f"HAL: component '{name}' died without leaving; removed", file=sys.stderr, flush=True)
@@ -102,6 +104,7 @@ def main() -> int:
     listener = socket.socket(fileno=LISTENER_FD)
     server = Server(listener)
     signal.signal(signal.SIGTERM, lambda *_: server.quit())
+    signal.set_wakeup_fd(server.wake.fileno(), warn_on_full_buffer=False)
     try:
         server.serve()
     finally:
