@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import struct
+from collections import namedtuple
+from typing import Any
 
 from nml.message import Message, Struct
 
@@ -31,3 +33,23 @@ class Span:
         self.pack = packer.pack
         self.pack_into = packer.pack_into
         self.unpack_from = packer.unpack_from
+        record: Any = namedtuple("record", [field.name for field in fields])
+        self._make = record._make
+
+    def read(self, source: bytearray, start: int = 0) -> Any:
+        """The fields by name, of the structure that begins at ``start``; only for spans of plain numbers."""
+        return self._make(self.unpack_from(source, start + self.offset))
+
+
+class Copy:
+    """Copies a member of one message to a member of another, byte for byte; both have the same layout."""
+
+    def __init__(self, source: type[Struct], from_path: str, target: type[Struct], to_path: str) -> None:
+        from_field, from_at = source.field(from_path)
+        to_field, to_at = target.field(to_path)
+        assert from_field.flat() == to_field.flat(), (from_path, to_path)
+        self._source = slice(from_at, from_at + from_field.size)
+        self._target = slice(to_at, to_at + to_field.size)
+
+    def __call__(self, source: bytearray, target: bytearray) -> None:
+        target[self._target] = source[self._source]

@@ -42,7 +42,8 @@ class MotionClient:
         self._status = status
         self._errors = errors
         self.status = EMCMOT_STATUS()
-        self._image = image(self.status)
+        self.image = image(self.status)
+        """The bytes of ``status``, live."""
         self._command = EMCMOT_COMMAND()
         self._blank = bytes(self._command.data)
         self._in_flight: deque[int] = deque()
@@ -55,7 +56,7 @@ class MotionClient:
 
     def poll(self) -> bool:
         """Take over a new status; is there one?"""
-        if not self._status.poll_into(self._image):
+        if not self._status.poll_into(self.image):
             return False
         self.known = True
         echo = self.status.commandNumEcho

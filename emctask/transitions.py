@@ -95,7 +95,6 @@ def _switch_off(task: Task) -> None:
     motion.send(MotCommand.DISABLE)
     for spindle in range(len(task.config.spindles)):
         motion.send(MotCommand.SPINDLE_OFF, spindle=spindle)
-    motion.send(MotCommand.JOINT_UNHOME, joint=UNHOME_VOLATILE)
     task.io.send(EMC_LUBE_OFF())
 
 
@@ -107,6 +106,8 @@ def left_on(task: Task, state: State) -> None:
         emergency_stop(task, Reason.AUX_ESTOP)
     else:
         _switch_off(task)
+    if any(joint.volatile_home for joint in task.config.joints):
+        task.motion.send(MotCommand.JOINT_UNHOME, joint=UNHOME_VOLATILE)
     task.mode = Mode.MANUAL
 
 
