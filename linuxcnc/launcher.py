@@ -79,7 +79,7 @@ def _launch(options: argparse.Namespace) -> int:
         with Machine(configuration, to_stderr) as machine:
             machine.start()
             if options.run is not None:
-                run_program(machine.check, options.run.resolve())
+                print(run_program(machine.check, options.run.resolve()), flush=True)
                 return 0
             return _follow_display(machine)
     except (PyemcError, ProgramError, error) as reason:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -187,21 +186,26 @@ class Operator:
         return max(joint["ferror_highmark"] for joint in status.joint[: status.joints])
 
 
-def run_program(check: Callable[[], None], path: Path) -> None:
-    """Run one program on a started machine and print the summary; ProgramError says why it did not end.
+def run_program(check: Callable[[], None], path: Path) -> str:
+    """Run one program on a started machine, from E-stop to the summary; ProgramError says why it did not end.
 
     ``check`` is called now and then; it raises when a process of the machine is gone.
     """
     from linuxcnc.progress import make_display
 
-    motion = Channel(linuxcnc.nmlfile, "emcmotStatus", "xemc")
     with make_display(path.name) as display:
         operator = Operator(check, display)
         operator.prepare()
         operator.open(path)
-        before = _distance(motion)
-        progress = operator.run(path)
-    _print_summary(progress, _distance(motion) - before, operator.worst_following_error())
+        return run_loaded(operator, path)
+
+
+def run_loaded(operator: Operator, path: Path) -> str:
+    """Run the loaded program; returns the summary."""
+    motion = Channel(linuxcnc.nmlfile, "emcmotStatus", "xemc")
+    before = _distance(motion)
+    progress = operator.run(path)
+    return _summary(progress, _distance(motion) - before, operator.worst_following_error())
 
 
 def _distance(motion: Channel) -> float:
@@ -219,7 +223,7 @@ def _unit_name(units_per_mm: float) -> str:
     return "mm" if abs(units_per_mm - 1.0) < 1e-6 else "inch" if abs(units_per_mm * 25.4 - 1.0) < 1e-3 else "units"
 
 
-def _print_summary(progress: Progress, distance: float, ferror: float) -> None:
+def _summary(progress: Progress, distance: float, ferror: float) -> str:
     from linuxcnc.progress import duration
 
     rows = (
@@ -228,6 +232,4 @@ def _print_summary(progress: Progress, distance: float, ferror: float) -> None:
         ("tool changes", str(progress.tool_changes)),
         ("worst following error", f"{ferror:.6f} {progress.units}"),
     )
-    for name, value in rows:
-        print(f"{name + ':':<23}{value}")
-    sys.stdout.flush()
+    return "\n".join(f"{name + ':':<23}{value}" for name, value in rows)

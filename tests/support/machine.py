@@ -34,8 +34,8 @@ def wait_until(condition: Callable[[], object], what: str, timeout: float = PATI
 def copy_mill(folder: Path, *, units: str = "mm", changes: dict[str, str] | None = None, hal: str = "") -> Path:
     """A copy of the simulated mill whose linuxcncrsh takes any free port; ``changes`` replace whole INI lines.
 
-    Its NML buffers have no TCP ports, which parallel tests would quarrel about. A key of ``changes`` is ``SECTION.KEY``; its value replaces that of every such entry. ``hal`` is added as a last HAL
-    file.
+    A key of ``changes`` is ``SECTION.KEY``; its value replaces that of every such entry. ``hal`` is added as a last HAL
+    file. The NML buffers of the copy have no TCP ports, which tests in parallel would quarrel about.
     """
     for path in MILL.iterdir():
         if path.suffix in (".hal", ".tbl", ".ini"):
@@ -64,7 +64,7 @@ class Run:
 
     def __init__(self, ini: Path, *options: str, speed: float = 1.0) -> None:
         environment = dict(os.environ)
-        environment["PYTHONPATH"] = str(ROOT)
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), environment.get("PYTHONPATH")]))
         self.namespace = environment[namespace.VARIABLE]
         self.process = subprocess.Popen(
             [sys.executable, "-m", "linuxcnc.launcher", str(ini), "--speed", str(speed), *options],
