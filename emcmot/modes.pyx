@@ -136,7 +136,8 @@ cdef void change_mode(Motion* m) noexcept nogil:
             m.mode_wanted = MotionState_FREE
             snprintf(report(m), TEXT_SIZE, b"The position of the tool is not known: home the machine first")
             return
-        align_joints(m)
+        if align_joints(m) != 0:
+            return
     if m.mode_wanted == MotionState_TELEOP:
         enter_teleop(m)
     else:

@@ -77,7 +77,6 @@ ctypedef struct Joint:
     double acc_cmd
     double backlash_corr     # correction wanted
     FreePlanner correction   # the correction applied, which follows it under limits
-    FreePlanner align        # difference between joint and kinematics when a mode began, on its way to 0
     double motor_offset
     double motor_pos_cmd
     double pos_fb

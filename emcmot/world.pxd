@@ -12,7 +12,7 @@ cdef int inverse(Motion* m, double* joints, double* pose) noexcept nogil
 cdef void update_world_feedback(Motion* m) noexcept nogil
 cdef int world_from_joints(Motion* m) noexcept nogil
 cdef int command_world(Motion* m, double* pose) noexcept nogil
-cdef void align_joints(Motion* m) noexcept nogil
+cdef int align_joints(Motion* m) noexcept nogil
 cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose) noexcept nogil
 cdef void refresh_planner_limits(Motion* m) noexcept nogil
 cdef int kinematics_usable(Motion* m) noexcept nogil

@@ -4,7 +4,6 @@ from libc.math cimport fabs, isfinite, sqrt
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MAX_JOINTS
-from emcmot.free_planner cimport free_planner_rest_at, free_planner_step
 from emcmot.joint cimport command_joint
 from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY
 from emcmot.report cimport TEXT_SIZE, report
@@ -13,7 +12,8 @@ from emcmot.tp.tp cimport tp_set_axis_limits
 
 cdef const char* AXIS_NAMES = b"XYZABCUVW"
 cdef double LIMIT_TOLERANCE = 1e-9   # lu or deg, relative to 1 + |limit|: rounding of unit conversions
-cdef double ALIGN_SHARE = 0.1        # share of a joint's limits for closing a gap between joints and kinematics
+cdef double ALIGN_SHARE = 0.1        # share of a joint's velocity for closing a gap between joints and kinematics
+cdef double ALIGNED = 1e-8           # lu or deg: a smaller gap is none
 
 
 cdef int all_finite(const double* values, int count) noexcept nogil:
@@ -95,23 +95,28 @@ cdef int world_home_reached(Motion* m) noexcept nogil:
     return 1
 
 
-cdef void align_joints(Motion* m) noexcept nogil:
-    """Before a Cartesian mode begins: keep each joint where it is, as a difference that then fades under limits.
+cdef int align_joints(Motion* m) noexcept nogil:
+    """Before a Cartesian mode begins, in free mode at rest: 0 where the joints stand as the kinematics have it.
 
-    The joints of a gantry, for example, stand a little apart when the machine is switched on.
+    Where they do not (the two sides of a gantry stand a little apart when it is switched on), they are sent there slowly.
     """
     cdef double joints[MAX_JOINTS]
     cdef Joint* joint
     cdef int n
+    cdef int moving = 0
+    for n in range(m.num_joints):
+        joints[n] = m.joint[n].pos_cmd
     if inverse(m, joints, m.pos_cmd) != 0:
-        return
+        return -1
     for n in range(m.kins.joints):
         joint = &m.joint[n]
-        free_planner_rest_at(&joint.align, joint.pos_cmd - joints[n])
-        joint.align.target = 0.0
-        joint.align.vel_limit = ALIGN_SHARE * joint.vel_limit
-        joint.align.acc_limit = ALIGN_SHARE * joint.acc_limit
-        joint.align.enabled = 1
+        if fabs(joint.pos_cmd - joints[n]) > ALIGNED:
+            joint.free.target = joints[n]
+            joint.free.enabled = 1
+            joint.free.active = 1
+            joint.jog_vel = ALIGN_SHARE * joint.vel_limit
+            moving = 1
+    return -1 if moving else 0
 
 
 cdef int command_world(Motion* m, double* pose) noexcept nogil:
@@ -131,9 +136,7 @@ cdef int command_world(Motion* m, double* pose) noexcept nogil:
         m.pos_cmd[n] = pose[n]
     for n in range(m.kins.joints):
         joint = &m.joint[n]
-        if joint.align.pos != 0.0 or joint.align.vel != 0.0:
-            free_planner_step(&joint.align, m.dt)
-        joint.coarse_pos = joints[n] + joint.align.pos
+        joint.coarse_pos = joints[n]
         command_joint(joint, joint.coarse_pos, m.dt)
     m.pos_cmd_ok = 1
     return 0

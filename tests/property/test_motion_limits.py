@@ -1,0 +1,103 @@
+"""No joint is ever commanded beyond its velocity or acceleration limit, whatever is commanded and whenever."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from emcmot.sim import Motion
+from nml.emc.emcmot import MotCommand as C
+from tests.support.mill import VEL, bring_to, configure
+
+ROUNDING = 1e-6
+
+
+def _line(m: Motion, rng: random.Random) -> None:
+    m.send(
+        C.SET_LINE,
+        id=rng.randrange(1, 1000),
+        pos=[rng.uniform(-60, 60) for _ in range(3)] + [0.0] * 6,
+        vel=rng.uniform(0.5, 150),
+        ini_maxvel=VEL,
+        acc=1000.0,
+        termCond=rng.choice([1, 2, 3]),
+        tolerance=rng.choice([0.0, 0.01, 1.0]),
+        motion_type=rng.choice([1, 2]),
+    )
+
+
+def _lines(m: Motion, rng: random.Random) -> None:
+    for _ in range(rng.randrange(1, 12)):
+        _line(m, rng)
+
+
+def _jog(m: Motion, rng: random.Random) -> None:
+    index = rng.randrange(3)
+    m.send(
+        rng.choice([C.JOG_CONT, C.JOG_INCR, C.JOG_ABS]),
+        joint=index,
+        axis=index,
+        mode=m.status.motion_state == 1,
+        vel=rng.choice([-1, 1]) * rng.uniform(0.1, 200),
+        offset=rng.uniform(-70, 70),
+    )
+
+
+def _wheel(m: Motion, rng: random.Random) -> None:
+    index = rng.randrange(3)
+    place = f"axis.{'xyz'[index]}" if m.status.motion_state == 2 else f"joint.{index}"
+    m[f"{place}.jog-enable"] = 1
+    m[f"{place}.jog-scale"] = rng.uniform(0.01, 2)
+    m[f"{place}.jog-vel-mode"] = rng.random() < 0.5
+    m[f"{place}.jog-accel-fraction"] = rng.uniform(0.1, 1.2)
+    m[f"{place}.jog-counts"] += rng.randrange(-20, 20)
+
+
+def _mode(m: Motion, rng: random.Random) -> None:
+    m.send(rng.choice([C.FREE, C.TELEOP, C.COORD]))
+
+
+def _switch(m: Motion, rng: random.Random) -> None:
+    m.send(rng.choice([C.ENABLE, C.ENABLE, C.ENABLE, C.DISABLE]))
+
+
+def _override(m: Motion, rng: random.Random) -> None:
+    m.send(rng.choice([C.FEED_SCALE, C.RAPID_SCALE]), scale=rng.choice([0.0, 0.1, 0.5, 1.0, 1.0]))
+
+
+def _program(m: Motion, rng: random.Random) -> None:
+    m.send(rng.choice([C.PAUSE, C.RESUME, C.STEP, C.ABORT, C.RESUME]))
+
+
+def _home(m: Motion, rng: random.Random) -> None:
+    m.send(C.JOINT_HOME, joint=rng.randrange(-1, 3))
+
+
+def _pin(m: Motion, rng: random.Random) -> None:
+    name = rng.choice(["feed-hold", "feed-inhibit", "jog-stop", "jog-inhibit", "enable", "probe-input"])
+    m[f"motion.{name}"] = rng.random() < (0.9 if name == "enable" else 0.3)
+
+
+def _stop_jog(m: Motion, rng: random.Random) -> None:
+    index = rng.randrange(3)
+    m.send(C.JOG_ABORT, joint=index, axis=index, mode=rng.randrange(2))
+
+
+ACTIONS = [_line, _lines, _jog, _jog, _wheel, _mode, _mode, _switch, _override, _program, _home, _pin, _stop_jog]
+
+
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("coordinates", ["xyz", "xyyz"])
+def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates: str) -> None:
+    rng = random.Random(seed)
+    m = bring_to(configure(Motion(coordinates)), "homed")
+    for _ in range(120):
+        action = rng.choice(ACTIONS)
+        action(m, rng)
+        if rng.random() < 0.3:
+            m.send(C.ENABLE)
+        m.step(rng.choice([1, 2, 5, 30, 200]))
+        m.errors()
+        assert m.worst_vel <= 1.0 + ROUNDING, (seed, action)
+        assert m.worst_acc <= 1.0 + ROUNDING, (seed, action)
