@@ -22,7 +22,7 @@ from libc.string cimport memcpy, memset, strerror, strncpy
 from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 from posix.unistd cimport getpid
 
-from nml.errors import BufferError_, ChannelTimeout, EncodeError, QueueFull
+from nml.errors import BufferError_, ChannelTimeout, QueueFull, TooLong
 
 cdef extern from * nogil:
     """
@@ -397,7 +397,7 @@ cdef class Buffer:
         cdef int failed = 0
         self.check_open()
         if size > self.longest:
-            raise EncodeError(f"buffer {self.name}: {size} bytes, the longest message has {self.longest}")
+            raise TooLong(f"buffer {self.name}: {size} bytes, the longest message has {self.longest}")
         if self.lock_writes:
             self.lock(&head.write_lock)
         if only_if_read and not self.was_read():

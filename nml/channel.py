@@ -10,51 +10,18 @@ Every process of a controller, and every client, talks through channels; what li
 from __future__ import annotations
 
 import importlib
-import mmap
 import os
 import weakref
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 
-from nml import _shm
-from nml.config import BufferLine, BufferType, Mutex, NmlConfig, ProcessLine, ProcessType, is_this_host
-from nml.errors import BufferError_, ConfigError, DecodeError, EncodeError
+from nml.buffers import attach, open_memory
+from nml.codecs import codec
+from nml.config import BufferLine, NmlConfig, ProcessLine, ProcessType, is_this_host
+from nml.errors import BufferError_, ConfigError, DecodeError, EncodeError, TooLong
 from nml.message import Command, Message, decode
-from nml.namespace import runtime_dir
-from nml.segment import Memory, Segment
 
 Configuration = NmlConfig | str | os.PathLike[str] | None
-
-
-@dataclass(frozen=True, slots=True)
-class BufferLayout:
-    """What a B line wants of its memory (``nml.segment.Layout``)."""
-
-    line: BufferLine
-
-    @property
-    def kind(self) -> int:
-        if not self.line.queue:
-            return _shm.SLOT
-        return _shm.BROADCAST if self.line.broadcast else _shm.QUEUE
-
-    @property
-    def size(self) -> int:
-        return _shm.segment_size(self.kind, self.line.size, self.line.max_procs)
-
-    def make(self, memory: mmap.mmap) -> None:
-        _shm.format_segment(memory, self.line.name, self.kind, self.line.size, self.line.max_procs)
-
-    def renew(self, memory: mmap.mmap) -> None:
-        _shm.renew_locks(memory)
-
-    def complete(self, memory: mmap.mmap) -> bool:
-        return _shm.is_complete(memory)
-
-    def check(self, memory: mmap.mmap) -> None:
-        _shm.check_segment(memory, self.line.name, self.kind, self.line.size, self.line.max_procs)
 
 
 class Channel:
@@ -86,27 +53,19 @@ class Channel:
         if process.c_num >= line.max_procs:
             message = f"c_num {process.c_num} of {process.process}; buffer {line.name} has max_procs {line.max_procs}"
             raise ConfigError(message, process.place)
-        self._memory = _memory(line)
-        self._let_go = weakref.finalize(self, self._memory.close)
+        self._memory = open_memory(line)
+        self._let_go = weakref.finalize(self, self._memory.close) if self._memory else _nothing
         self._attach()
 
     def _attach(self) -> None:
         line, process = self.line, self.process
-        assert self._memory.map is not None
-        BufferLayout(line).check(self._memory.map)
         self._serial = line.serial
         self._may_write = process.may_write
-        self.raw = _shm.Buffer(
-            self._memory.map,
-            timeout=process.timeout,
-            lock_writes=line.mutex is not Mutex.NONE,
-            shared=process.shared,
-            c_num=process.c_num if line.diag else -1,
-            process=process.process,
-        )
+        self._codec = codec(line.encoding.value) if line.neutral else None
+        self.raw = attach(self._memory, line, process)
         """The buffer itself: bytes instead of messages."""
         if process.may_read:
-            self.poll_into = self.raw.poll_into
+            self.poll_into = self.raw.poll_into if self._codec is None else self._poll_decoded
             """``poll_into(bytearray) -> bool``: copy a new single-slot message; False, and quick, if there is none."""
 
     @property
@@ -132,7 +91,7 @@ class Channel:
     @property
     def orphaned(self) -> bool:
         """Whether the buffer was removed while this channel was open: nobody else will ever meet it there."""
-        return self._memory.orphaned
+        return self._memory is not None and self._memory.orphaned
 
     def write(self, message: Message) -> int:
         """Publish a message: its number in the buffer, which a ``serial`` buffer also stores in the message.
@@ -149,8 +108,10 @@ class Channel:
         if not self._may_write:
             raise self._not_allowed("write")
         try:
+            if self._codec is not None:
+                return self.raw.write(self._encoded(message), False, only_if_read)
             return self.raw.write(message.data, self._serial and isinstance(message, Command), only_if_read)
-        except EncodeError:
+        except TooLong:
             raise self._too_long(message) from None
 
     def read(self) -> Message | None:
@@ -219,7 +180,7 @@ class Channel:
         other.line = self.line
         other.process = self.process
         other._memory = self._memory
-        other._let_go = lambda: None
+        other._let_go = _nothing
         other._attach()
         return other
 
@@ -236,30 +197,44 @@ class Channel:
 
     def _decoded(self, data: bytearray) -> Message:
         try:
-            return decode(data)
+            if self._codec is None:
+                return decode(data)
+            message = self._codec.decode(data)
         except DecodeError as error:
             raise DecodeError(f"buffer {self.name}: {error}") from None
+        if self._serial and isinstance(message, Command):
+            message.serial_number = self.raw.last
+        return message
 
-    def _too_long(self, message: Message) -> EncodeError:
+    def _encoded(self, message: Message) -> bytes:
+        """The message as it lies in a neutral buffer; there its serial number is that of the record."""
+        assert self._codec is not None
+        encoded = self._codec.encode(message)
+        limit = self.line.enc_max_size
+        if limit is not None and len(encoded) > limit:
+            kind = type(message).__name__
+            raise EncodeError(f"buffer {self.name}: {kind} has {len(encoded)} bytes encoded, enc_max_size is {limit}")
+        return encoded
+
+    def _poll_decoded(self, into: bytearray) -> bool:
+        data = self.raw.peek()
+        if data is None:
+            return False
+        message = self._decoded(data)
+        if len(into) < message.SIZE:
+            raise BufferError_(f"buffer {self.name}: the message has {message.SIZE} bytes, the reader {len(into)}")
+        into[: message.SIZE] = message.data
+        return True
+
+    def _too_long(self, message: Message) -> TooLong:
         kind = type(message).__name__
         longest = self.raw.longest
-        return EncodeError(f"buffer {self.name}: {kind} has {message.SIZE} bytes, the longest message has {longest}")
+        return TooLong(f"buffer {self.name}: {kind} has {message.SIZE} bytes, the longest message has {longest}")
 
     def _not_allowed(self, what: str) -> BufferError_:
         line = self.process
         return BufferError_(f"{line.place}: {line.process} may not {what} {self.name}, its ops are {line.ops}")
 
 
-def _memory(line: BufferLine) -> Memory | Segment:
-    layout = BufferLayout(line)
-    match line.type:
-        case BufferType.LOCMEM:
-            return Memory(line.name, layout, line.key)
-        case BufferType.FILEMEM:
-            return Segment(line.name, layout, line.key, _file_of(line))
-        case _:
-            return Segment(line.name, layout, line.key)
-
-
-def _file_of(line: BufferLine) -> Path:
-    return runtime_dir() / f"{line.name}.nml-buffer"
+def _nothing() -> None:
+    """What a channel does that has no memory of its own to let go of."""

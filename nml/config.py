@@ -247,6 +247,8 @@ class NmlConfig:
         self.path = Path(path)
         self.buffer_lines: list[BufferLine] = []
         self.process_lines: list[ProcessLine] = []
+        self.remarks: list[str] = []
+        """What is accepted but has no effect here, as ``file:line: ...``."""
         try:
             lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError as error:
@@ -278,12 +280,13 @@ class NmlConfig:
         for line in packaged.buffer_lines:
             if line.name in OWN_BUFFERS - present:
                 if guide is not None:
-                    line = replace(line, host=guide.host, tcp=guide.tcp if line.tcp else None)
+                    links = {name: getattr(guide, name) for name in _LINKS} if line.tcp else {"tcp": None}
+                    line = replace(line, host=guide.host, **links)
                 self.buffer_lines.append(line)
         for user in packaged.process_lines:
             if user.buffer in OWN_BUFFERS - present:
                 if way := ways.get(user.process):
-                    user = replace(user, type=way.type, host=way.host, timeout=way.timeout)
+                    user = replace(user, **{name: getattr(way, name) for name in _WAY})
                 self.process_lines.append(user)
 
     def buffer(self, name: str) -> BufferLine:
@@ -305,8 +308,8 @@ class NmlConfig:
         message = f"no P line of process {process!r} for buffer {buffer!r}; it has {names}"
         raise ConfigError(message, Place(str(self.path)))
 
-    def _take(self, line: str, number: int) -> None:
-        words = [(match[0], Place(str(self.path), number, match.start() + 1)) for match in _WORD.finditer(line)]
+    def _take(self, text: str, number: int) -> None:
+        words = [(match[0], Place(str(self.path), number, match.start() + 1)) for match in _WORD.finditer(text)]
         if not words or words[0][0].startswith("#"):
             return
         kind, place = words[0]
@@ -314,14 +317,23 @@ class NmlConfig:
             values = _fields(words[1:], _BUFFER_FIELDS, place)
             values |= _options(words[1 + len(_BUFFER_FIELDS) :], _BUFFER_FLAGS, _BUFFER_VALUES)
             values["neutral"] = bool(values["neutral"])
-            self.buffer_lines.append(BufferLine(**values, place=place))
+            line = BufferLine(**values, place=Place(place.file, place.line))
+            self.buffer_lines.append(line)
+            self.remarks += [f"{line.place}: buffer {line.name}: {text}" for text in _remarks(line)]
         elif kind == "P":
             values = _fields(words[1:], _PROCESS_FIELDS, place)
             values |= _options(words[1 + len(_PROCESS_FIELDS) :], _PROCESS_FLAGS, _PROCESS_VALUES)
             values |= {"server": bool(values["server"]), "master": bool(values["master"])}
-            self.process_lines.append(ProcessLine(**values, place=place))
+            self.process_lines.append(ProcessLine(**values, place=Place(place.file, place.line)))
         else:
             raise ConfigError(f"{kind!r} begins no line; B, P or a comment with # is allowed", place)
+
+
+def _remarks(line: BufferLine) -> Iterator[str]:
+    if line.type is BufferType.GLOBMEM:
+        yield "GLOBMEM is obsolete and served as SHMEM"
+    if line.mutex in (Mutex.NO_INTERRUPTS, Mutex.NO_SWITCHING):
+        yield f"mutex={line.mutex.value} does not exist on Linux; os_sem is used"
 
 
 _Words = list[tuple[str, Place]]
@@ -390,5 +402,7 @@ def is_this_host(host: str) -> bool:
 BROADCAST_BUFFERS = frozenset({"emcError"})
 """Queues in which every reader gets every message, also in a stock file; ``shared`` in a P line is stock behaviour."""
 
+_LINKS = ("tcp", "udp", "stcp", "serial_port", "baud", "passwd")
+_WAY = ("type", "host", "timeout", "reconnect", "max_timeouts", "serial_port", "passwd")
 OWN_BUFFERS = frozenset({"emcmotCommand", "emcmotStatus", "emcmotError", "toolTable"})
 """Buffers that LinuxCNC does not have; added to every NML file."""

@@ -4,6 +4,7 @@
     ├── ConfigError          a file that a person wrote: INI, HAL, NML, tool table (also a ValueError)
     ├── NmlError
     │   ├── EncodeError      our side made a message that cannot be written (also a ValueError)
+    │   │   └── TooLong      the buffer is too small for it
     │   ├── DecodeError      the other side wrote something that is no message (also a ValueError)
     │   ├── BufferError_     a buffer that is missing, too small, or not the one that was asked for
     │   │   └── QueueFull    no room until somebody reads
@@ -53,6 +54,10 @@ class NmlError(PyemcError):
 
 class EncodeError(NmlError, ValueError):
     """A message cannot be written: too long, a value out of range, an unknown field."""
+
+
+class TooLong(EncodeError):
+    """A message is longer than the buffer's longest; nothing was written."""
 
 
 class DecodeError(NmlError, ValueError):

@@ -7,7 +7,8 @@ what LinuxCNC 2.9 sends. ``decode`` raises DecodeError, and nothing else, for wh
 
 from __future__ import annotations
 
-from typing import Protocol
+import importlib
+from typing import Protocol, cast
 
 from nml.fields import Field
 from nml.message import Message
@@ -27,3 +28,11 @@ def encoded_fields(cls: type[Message], preamble: bool, extended: bool = False) -
     """The fields of a message in the order of the wire; ``extended``: local ones too, in memory order."""
     head = tuple(f for f in cls.FIELDS if f.part == "header" or (preamble and f.part == "preamble"))
     return head + (cls.BODY if extended else cls.WIRE)
+
+
+_MODULES = {"raw": "raw", "xdr": "xdr", "ascii": "ascii", "disp": "disp", "msgpack": "packed"}
+
+
+def codec(name: str) -> Codec:
+    """The codec that an NML file calls ``name``; 'raw' is the C layout."""
+    return cast(Codec, importlib.import_module(f"nml.codecs.{_MODULES[name]}"))
