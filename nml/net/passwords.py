@@ -37,7 +37,7 @@ class PasswordFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._secrets: dict[bytes, bytes] = {}
+        self.secrets: dict[bytes, bytes] = {}
         try:
             lines = path.read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError) as error:
@@ -51,16 +51,16 @@ class PasswordFile:
         if not user or not colon or not password or len(user.encode()) > FIELD:
             raise ConfigError(f"a line 'name:password' is needed, the name of at most {FIELD} bytes", place)
         if not password.startswith(_HASHED):
-            self._secrets[user.encode()] = secret(user, password)
+            self.secrets[user.encode()] = secret(user, password)
             return
         try:
-            self._secrets[user.encode()] = bytes.fromhex(password[len(_HASHED) :])
+            self.secrets[user.encode()] = bytes.fromhex(password[len(_HASHED) :])
         except ValueError:
             raise ConfigError(f"after {_HASHED} a hexadecimal number is needed", place) from None
 
     def accepts(self, user: bytes, password: bytes, challenge: bytes) -> bool:
         """Whether ``password`` is the one of ``user``, or its proof where there was a challenge."""
-        key = self._secrets.get(user)
+        key = self.secrets.get(user)
         if key is None:
             return False
         if challenge:
@@ -70,6 +70,25 @@ class PasswordFile:
         except UnicodeDecodeError:
             return False
         return hmac.compare_digest(given, key)
+
+
+def credentials(path: Path) -> tuple[bytes, bytes]:
+    """User name and secret of a client: the only line of its password file."""
+    users = list(PasswordFile(path).secrets.items())
+    if len(users) != 1:
+        raise ConfigError(f"a client's password file has one line, this one has {len(users)}", Place(str(path)))
+    return users[0]
+
+
+def plain_credentials(place: Place, passwd: str) -> bytes:
+    """``name password`` of a client's password file, for links that send the password itself."""
+    path = Path(place.file).parent / passwd
+    user, _ = credentials(path)
+    for line in path.read_text(encoding="utf-8").splitlines():
+        name, _, password = line.strip().partition(":")
+        if name.encode() == user and not password.startswith(_HASHED):
+            return user + b" " + password.encode()
+    raise ConfigError("this link needs the password itself, not its hash", Place(str(path)))
 
 
 def main() -> int:

@@ -1,30 +1,21 @@
-"""NML over a serial line (serialPortDevName=): packets of ``datagram`` in frames that survive noise.
+"""NML over a serial line (serialPortDevName=): packets in frames that survive noise.
 
 A frame is the packet and its CRC-32, big endian, in SLIP's escaping (RFC 1055): 0xC0 ends a frame, 0xDB 0xDC and
-0xDB 0xDD stand for the two bytes themselves. A frame that is damaged or too long is dropped, and the client asks again.
+0xDB 0xDD stand for the two bytes themselves. A frame that is damaged or too long is dropped, and the client asks
+again. Both ends use this: ``packet_ports`` and ``packet_links``.
 """
 
 from __future__ import annotations
 
-import os
-import select
 import struct
 import zlib
 from collections.abc import Iterator
 from typing import Any
 
-from nml.clock import host_now
-from nml.net.datagram import Peers
-from nml.net.served import Shelf
-from nml.net.streams import Loop
-
-LARGEST = 1 << 20
-"""Bytes of the longest frame that is collected."""
-DEFAULT_BAUD = 115200
+from nml.net.wire import LARGEST_FRAME
 
 _END, _ESCAPE = b"\xc0", b"\xdb"
 _CRC = struct.Struct(">I")
-_CHUNK = 4096
 
 
 def frame(packet: bytes) -> bytes:
@@ -49,7 +40,7 @@ class Unframer:
             if packet is not None:
                 yield packet
         self._collected += rest
-        if len(self._collected) > LARGEST:
+        if len(self._collected) > LARGEST_FRAME:
             self._collected.clear()
 
 
@@ -61,57 +52,8 @@ def _unescaped(body: bytes) -> bytes | None:
     return packet
 
 
-def open_line(device: str, baud: int) -> Any:
-    """The serial port, raw and non-blocking; OSError if that fails."""
+def open_line(device: str, baud: int, exclusive: bool = False) -> Any:
+    """The serial port, raw and non-blocking, ``exclusive`` if no other process may have it; OSError if that fails."""
     import serial  # type: ignore[import-untyped]
 
-    return serial.Serial(device, baudrate=baud, timeout=0, write_timeout=0, exclusive=False)
-
-
-class SerialPort:
-    """The server's end of a serial line."""
-
-    def __init__(self, device: str, baud: int, loop: Loop, shelf: Shelf) -> None:
-        self._loop = loop
-        self._peers = Peers(shelf, LARGEST)
-        self._port = open_line(device, baud)
-        self._fd: int = self._port.fileno()
-        os.set_blocking(self._fd, False)
-        self._unframer = Unframer()
-        self._out = b""
-        loop.watch(self._fd, self, select.EPOLLIN)
-
-    def ready(self, events: int) -> None:
-        """Answer packets, one after the other: while a reply is on its way, further requests are dropped."""
-        try:
-            if events & select.EPOLLOUT:
-                self._send()
-            if events & select.EPOLLIN:
-                for packet in self._unframer.receive(os.read(self._fd, _CHUNK)):
-                    reply = self._peers.answer(None, packet, host_now())
-                    if reply is not None and not self._out:
-                        self._out = frame(reply)
-                        self._send()
-            elif events & (select.EPOLLHUP | select.EPOLLERR):
-                self.close()
-        except BlockingIOError:
-            return
-        except OSError:
-            self.close()
-
-    def _send(self) -> None:
-        had = self._out
-        try:
-            self._out = self._out[os.write(self._fd, self._out) :]
-        except BlockingIOError:
-            pass
-        finally:
-            if had:
-                self._loop.change(self._fd, select.EPOLLIN | (select.EPOLLOUT if self._out else 0))
-
-    def close(self) -> None:
-        if self._fd >= 0:
-            self._loop.forget(self._fd)
-            self._fd = -1
-            self._port.close()
-            self._peers.close()
+    return serial.Serial(device, baudrate=baud, timeout=0, write_timeout=0, exclusive=exclusive)

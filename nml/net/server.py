@@ -24,9 +24,8 @@ from nml.clock import host_now
 from nml.config import BufferLine, NmlConfig
 from nml.errors import ConfigError, NmlError
 from nml.inifile import IniFile
-from nml.net.datagram import UdpPort
+from nml.net.packet_ports import SerialPort, UdpPort
 from nml.net.protocol import Session
-from nml.net.serial_line import SerialPort
 from nml.net.served import Shelf
 from nml.net.stcp import TextSession
 from nml.net.streams import Connection, Limits, Listener, Release, SessionLike, Watched

@@ -16,9 +16,7 @@ from collections.abc import Callable, Mapping
 from nml.net.forms import Kind
 from nml.net.protocol import LOGIN_ATTEMPTS, OUTPUT_LIMIT, View
 from nml.net.served import Desk
-from nml.net.wire import CmsStatus, Request
-
-LONGEST_LINE = 1 << 20
+from nml.net.wire import LONGEST_LINE, CmsStatus, Request
 
 _LINE = re.compile(rb"(\w+)\((\d{1,9})(?:,(\d{1,10}))?\):(.*)", re.DOTALL)
 _NEVER = float("inf")

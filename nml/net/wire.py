@@ -27,6 +27,16 @@ LOGIN = struct.Struct(">16s16s")
 DIAG_INFO = struct.Struct(">16s32sII8s4s")
 """process name, host, process id, connection number, library version (double), 0x11223344; the last two native"""
 
+PACKET_REQUEST = struct.Struct(">IIIIIII")
+"""On UDP and serial lines: type, buffer number, serial, word 3, word 4, token of the client, vocabulary checksum"""
+PACKET_REPLY = struct.Struct(">II")
+"""serial of the request, 1 if messages are native images; the reply as on TCP follows"""
+LARGEST_UDP = 65507
+LARGEST_FRAME = 1 << 20
+"""Bytes of the longest frame that is collected from a serial line."""
+LONGEST_LINE = 1 << 20
+"""Bytes of the longest line of STCP."""
+
 MASK = 0xFFFF_FFFF
 NAME_LENGTH = 31
 """Characters of a buffer name that both ends compare."""

@@ -1,34 +1,31 @@
 """Requests and replies in packets that may get lost: UDP, and the frames of a serial line.
 
-A request has the words type, buffer number, serial, word 3, word 4 and a token that the client chose, then what
-would follow the five words on TCP. A reply is the serial of its request, then the reply as on TCP (nothing more where
-TCP sends none). A client repeats its request until the reply with that serial comes; the server answers a repeated
-request with the reply that it gave before, so that a command is never taken twice. ``links`` has the client's end.
+A request is ``wire.PACKET_REQUEST``, then what would follow the five words on TCP; a reply is ``wire.PACKET_REPLY``,
+then the reply as on TCP (nothing more where TCP sends none). A client repeats its request until the reply with that
+serial comes; the server answers a repeated request with the reply that it gave before, so that a command is never taken
+twice. ``packet_links`` has the client's end, ``server`` the loop.
 """
 
 from __future__ import annotations
 
+import os
 import select
 import socket
-import struct
 from collections import OrderedDict
 from collections.abc import Hashable
 
 from nml.clock import host_now
 from nml.net import wire
 from nml.net.protocol import Session
+from nml.net.serial_line import Unframer, frame, open_line
 from nml.net.served import Desk, Shelf
 from nml.net.streams import Loop
 from nml.net.wire import CmsStatus, Request
 
-HEADER = struct.Struct(">IIIIII")
-"""type, buffer number, serial, word 3, word 4, token"""
-SERIAL = struct.Struct(">I")
-LARGEST = 65507
-"""Bytes of the largest UDP packet."""
 PEERS = 256
 """Clients that the server remembers; the one that was quiet for longest is forgotten."""
 _ONE_REPLY_EACH = (Request.SUBSCRIBE, Request.BLOCKING_READ)
+_CHUNK = 4096
 _TURN = 64
 """Packets taken before other links have their turn."""
 
@@ -49,17 +46,17 @@ class Peer:
 class Peers:
     """Answers packets, for clients that are told apart by address and token."""
 
-    def __init__(self, shelf: Shelf, largest: int = LARGEST) -> None:
+    def __init__(self, shelf: Shelf, largest: int = wire.LARGEST_UDP) -> None:
         self._shelf = shelf
         self._largest = largest
         self._peers: OrderedDict[Hashable, Peer] = OrderedDict()
 
     def answer(self, address: Hashable, packet: bytes, now: float) -> bytes | None:
         """The reply to a packet; None for one that is no request, or an old one."""
-        if len(packet) < HEADER.size:
+        if len(packet) < wire.PACKET_REQUEST.size:
             return None
-        kind, number, serial, word3, word4, token = HEADER.unpack_from(packet)
-        rest = packet[HEADER.size :]
+        kind, number, serial, word3, word4, token, checksum = wire.PACKET_REQUEST.unpack_from(packet)
+        rest = packet[wire.PACKET_REQUEST.size :]
         expected = word4 if kind == Request.WRITE else wire.EXTRA_BYTES.get(kind, 0)
         if len(rest) != expected:
             return None
@@ -69,7 +66,8 @@ class Peers:
         if peer.serial is not None and (serial - peer.serial) & wire.MASK >= 1 << 31:
             return None
         peer.serial = serial
-        peer.reply = SERIAL.pack(serial) + self._reply(peer, kind, number, word3, word4, rest, now)
+        native = peer.desk.agree(checksum)
+        peer.reply = wire.PACKET_REPLY.pack(serial, native) + self._reply(peer, kind, number, word3, word4, rest, now)
         return peer.reply
 
     def _reply(self, peer: Peer, kind: int, number: int, word3: int, word4: int, rest: bytes, now: float) -> bytes:
@@ -78,7 +76,7 @@ class Peers:
         request = wire.REQUEST.pack(peer.count, kind, number, word3, word4) + rest
         peer.count = (peer.count + 1) & wire.MASK
         reply = peer.session.receive(request, now)
-        if len(reply) > self._largest - SERIAL.size:
+        if len(reply) > self._largest - wire.PACKET_REPLY.size:
             return wire.READ_REPLY.pack(peer.count, CmsStatus.INSUFFICIENT_SPACE_ERROR, 0, word4, 1)
         return reply
 
@@ -121,7 +119,7 @@ class UdpPort:
         """Answer the packets that wait; one that cannot be sent now is lost, and its client will repeat it."""
         for _ in range(_TURN):
             try:
-                packet, address = self._sock.recvfrom(LARGEST)
+                packet, address = self._sock.recvfrom(wire.LARGEST_UDP)
             except OSError:
                 return
             reply = self._peers.answer(address, packet, host_now())
@@ -135,4 +133,53 @@ class UdpPort:
         if self._sock.fileno() >= 0:
             self._loop.forget(self._sock.fileno())
             self._sock.close()
+            self._peers.close()
+
+
+class SerialPort:
+    """The server's end of a serial line."""
+
+    def __init__(self, device: str, baud: int, loop: Loop, shelf: Shelf) -> None:
+        self._loop = loop
+        self._peers = Peers(shelf, wire.LARGEST_FRAME)
+        self._port = open_line(device, baud)
+        self._fd: int = self._port.fileno()
+        os.set_blocking(self._fd, False)
+        self._unframer = Unframer()
+        self._out = b""
+        loop.watch(self._fd, self, select.EPOLLIN)
+
+    def ready(self, events: int) -> None:
+        """Answer packets, one after the other: while a reply is on its way, further requests are dropped."""
+        try:
+            if events & select.EPOLLOUT:
+                self._send()
+            if events & select.EPOLLIN:
+                for packet in self._unframer.receive(os.read(self._fd, _CHUNK)):
+                    reply = self._peers.answer(None, packet, host_now())
+                    if reply is not None and not self._out:
+                        self._out = frame(reply)
+                        self._send()
+            elif events & (select.EPOLLHUP | select.EPOLLERR):
+                self.close()
+        except BlockingIOError:
+            return
+        except OSError:
+            self.close()
+
+    def _send(self) -> None:
+        had = self._out
+        try:
+            self._out = self._out[os.write(self._fd, self._out) :]
+        except BlockingIOError:
+            pass
+        finally:
+            if had:
+                self._loop.change(self._fd, select.EPOLLIN | (select.EPOLLOUT if self._out else 0))
+
+    def close(self) -> None:
+        if self._fd >= 0:
+            self._loop.forget(self._fd)
+            self._fd = -1
+            self._port.close()
             self._peers.close()
