@@ -39,6 +39,7 @@ cdef class Core:
         for name, (_, low, high) in LIMITS.items():
             if not low <= settings[name] <= high:
                 raise HalError(f"motmod: {name}={settings[name]}: {low} to {high} are allowed")
+        kinematics.fit(settings["num_joints"] - settings["num_extrajoints"])
         if settings["num_joints"] < kinematics.kins.joints + settings["num_extrajoints"]:
             raise HalError(
                 f"motmod: num_joints={settings['num_joints']}: {kinematics.name} has {kinematics.kins.joints} joints, "

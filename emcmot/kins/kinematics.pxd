@@ -33,4 +33,5 @@ cdef class KinematicsModule:
     cdef Kinematics kins
     cdef readonly tuple parameter_names
     cdef readonly str name
+    cdef public bint flexible            # works with fewer joints too: those that the machine has
     cdef readonly list pin_addresses   # HAL pins of the parameters, where it was loaded into a realtime host

@@ -45,6 +45,11 @@ cdef class KinematicsModule:
     def joints(self) -> int:
         return self.kins.joints
 
+    def fit(self, int joints) -> None:
+        """Use no more than ``joints`` joints, where the kinematics is flexible."""
+        if self.flexible and joints < self.kins.joints:
+            self.kins.joints = joints
+
     def parameters(self) -> dict:
         return {name: self.kins.parameter[i] for i, name in enumerate(self.parameter_names)}
 

@@ -1,6 +1,7 @@
 """Trivial kinematics: every joint is one axis. ``coordinates=`` gives the axis letter of each joint in order.
 
-A letter may come several times: these joints move together (a gantry), and the first of them gives the axis position.
+Without it, as many joints as the machine has are x y z a b c u v w. A letter may come several times: these joints move
+together (a gantry), and the first of them gives the axis position.
 ``kinstype=`` is 1 or identity (the default), f or forward, i or inverse, b or both: what motion believes of it.
 """
 
@@ -39,10 +40,11 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
     return 0
 
 
-def create(coordinates: str = AXIS_LETTERS, kinstype: str = "1") -> KinematicsModule:
+def create(coordinates: str | None = None, kinstype: str = "1") -> KinematicsModule:
     """The kinematics of these coordinates; HalError for letters that are no axes."""
     cdef KinematicsModule module = KinematicsModule("trivkins")
-    letters = coordinates.replace(" ", "").lower()
+    letters = (coordinates or AXIS_LETTERS).replace(" ", "").lower()
+    module.flexible = coordinates is None
     unknown = sorted(set(letters) - set(AXIS_LETTERS))
     if unknown or not 1 <= len(letters) <= 16:
         raise HalError(f"trivkins: coordinates={coordinates}: 1 to 16 letters of {AXIS_LETTERS} are allowed")
