@@ -2,7 +2,7 @@
 
 
 cdef class Canon:
-    cdef public bint block_delete, optional_stop
+    cdef public bint block_delete, optional_stop, is_task
     cpdef void init_canon(self) except *
     cpdef void set_g5x_offset(self, int index, double x, double y, double z, double a, double b, double c, double u, double v, double w) except *
     cpdef void set_g92_offset(self, double x, double y, double z, double a, double b, double c, double u, double v, double w) except *

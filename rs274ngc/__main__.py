@@ -1,0 +1,122 @@
+"""``rs274``: the stand-alone interpreter. ``rs274 -g FILE`` prints the canonical calls of a program."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from typing import Any
+
+from nml.errors import ConfigError, InterpError
+from rs274ngc import tooltable
+from rs274ngc.interp import Interpreter
+from rs274ngc.printer import PrintCanon
+
+CONTINUE, MDI, STOP = 0, 1, 2
+PROMPT = "READ => "
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options of LinuxCNC's rs274."""
+    options = argparse.ArgumentParser(prog="rs274", description="Interpret RS274/NGC programs without a machine.")
+    add = options.add_argument
+    add("-p", dest="interpreter", metavar="INTERP", help="pluggable interpreter; only the built-in one is there")
+    add("-t", dest="tools", metavar="TOOL.TBL", help="tool table file")
+    add("-v", dest="parameters", metavar="FILE.VAR", help="parameter file")
+    add("-i", dest="ini", metavar="FILE.INI", help="INI file")
+    add("-n", dest="next", type=int, choices=(CONTINUE, MDI, STOP), default=STOP, help="after an error: 0 continue, 1 enter MDI, 2 stop")
+    add("-b", dest="block_delete", action="store_true", help="skip lines that begin with a slash")
+    add("-s", dest="stack", action="store_true", help="print where an error was found")
+    add("-g", dest="go", action="store_true", help="go on without asking (batch mode)")
+    add("-T", dest="task_init", action="store_true", help="call task_init()")
+    add("-l", dest="log_level", type=int, default=-1, metavar="LEVEL", help="log level")
+    add("input", nargs="?", help="program; without it, lines are read from the terminal")
+    add("output", nargs="?", help="where to write (default: standard output)")
+    return options
+
+
+def read_ini(path: str) -> Any:
+    """The INI file of ``-i``."""
+    from nml.inifile import IniFile
+
+    return IniFile(path)
+
+
+def report(error: InterpError, stack: bool) -> None:
+    """An error on the standard error output: place, message, block."""
+    print(error, file=sys.stderr)
+    if error.block:
+        print(error.block, file=sys.stderr)
+    if stack and error.place is not None:
+        print(f"found at column {error.place.column}", file=sys.stderr)
+
+
+def type_in(interp: Interpreter, canon: PrintCanon, stack: bool) -> None:
+    """Execute lines from the terminal until its end or ``quit``."""
+    while True:
+        canon.flush()
+        try:
+            line = input(PROMPT if sys.stdin.isatty() else "")
+        except EOFError:
+            return
+        if line.strip() == "quit":
+            return
+        try:
+            interp.execute_mdi(line)
+            while interp.call_level:
+                interp.read()
+                interp.execute()
+        except InterpError as error:
+            canon.flush()
+            report(error, stack)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; 0: the program was right."""
+    options = parser().parse_args(arguments)
+    errors: list[InterpError] = []
+    output = 1
+    try:
+        if options.output:
+            output = os.open(options.output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
+        canon = PrintCanon(output, tools=tooltable.load(options.tools) if options.tools else ())
+        canon.block_delete = options.block_delete
+        interp = Interpreter(canon, read_ini(options.ini) if options.ini else None)
+        canon.state = interp.state
+        interp.parameter_file = options.parameters
+        interp.init()
+
+        def on_error(error: InterpError) -> None:
+            errors.append(error)
+            canon.flush()
+            report(error, options.stack)
+
+        if options.input:
+            interp.open(options.input)
+            interp.run_file(options.next == STOP, on_error)
+            if errors and options.next == MDI:
+                type_in(interp, canon, options.stack)
+            interp.close()
+            if not options.ini:
+                interp.reset()
+        else:
+            type_in(interp, canon, options.stack)
+        interp.exit()
+        canon.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 1
+    except (ConfigError, InterpError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"could not open output file {options.output}: {error.strerror}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        canon.flush()
+        return 130
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+"""Comments that act: MSG, DEBUG, PRINT, LOG, LOGOPEN, LOGAPPEND, LOGCLOSE, PROBEOPEN, PROBECLOSE; all others are shown.
+
+Only the last comment of a line counts. In DEBUG, PRINT and LOG, ``#123`` and ``#<name>`` are replaced by their values, in
+the format that ``%d``, ``%f`` (4 decimals) or ``%.nf`` set for the rest of the text.
+"""
+
+import re
+
+from rs274ngc.block cimport *
+from rs274ngc.params cimport get_named, named_exists
+from rs274ngc.state cimport PARAMETERS, State
+
+DEBUG_PARAMETER = 5599      # 0: DEBUG is silent
+
+ACTIVE = re.compile(r"[ \t]*(msg|debug|print|log|logopen|logappend|logclose|probeopen|probeclose)(?:,|(?=[ )])|$)(.*)", re.I | re.S)
+FIELD = re.compile(r"#<([^>]*)>|#(\d+)|%(d|f|\.\df)")
+
+
+def expand(State s, str text):
+    """``text`` with parameters replaced by their values; one that does not exist shows as ``######``."""
+    decimals = "6"
+
+    def field(match):
+        nonlocal decimals
+        name, number, style = match.groups()
+        if style:
+            decimals = "0" if style == "d" else "4" if style == "f" else style[1]
+            return ""
+        if name is not None:
+            name = "".join(name.split()).lower()
+            if not named_exists(s, name):
+                return "######"
+            value = get_named(s, name, -1)
+        else:
+            if not 0 < int(number) < PARAMETERS:
+                return "######"
+            value = s.params[<int>int(number)] if not 5420 <= int(number) <= 5428 else s.pos[<int>int(number) - 5420]
+        return f"{value:.{decimals}f}"
+
+    return FIELD.sub(field, text)
+
+
+def show_debug(State s, str text):
+    """DEBUG"""
+    if s.params[5599] != 0.0:
+        s.canon.message(expand(s, text))
+
+
+ACTIONS = {
+    "msg": lambda s, text: s.canon.message(text),
+    "debug": show_debug,
+    "print": lambda s, text: s.canon.print_text(expand(s, text)),
+    "log": lambda s, text: s.canon.log(expand(s, text)),
+    "logopen": lambda s, text: s.canon.logopen(text.strip()),
+    "logappend": lambda s, text: s.canon.logappend(text.strip()),
+    "logclose": lambda s, text: s.canon.logclose(),
+    "probeopen": lambda s, text: s.canon.probeopen(text.strip()),
+    "probeclose": lambda s, text: s.canon.probeclose(),
+}
+"""What each active comment does with the text after it."""
+
+
+cdef int act_on_comment(State s, Block* b) except -1:
+    """Do what the last comment of the line says, or show it."""
+    cdef str text = (<bytes>s.text[b.comment:b.comment + b.comment_size]).decode("utf-8", "replace")
+    match = ACTIVE.match(text)
+    if match is None:
+        s.canon.comment(text.lstrip(" \t"))
+    else:
+        ACTIONS[match.group(1).lower()](s, match.group(2))
+    return 0

@@ -1,0 +1,448 @@
+"""Program flow: O-words, M98 and M99, the files they lead to.
+
+Each level of calls is a Frame with its own labels. A label of a loop or a condition stands in ``Frame.labels`` while the
+program is between its first and its last line: ``Label`` says what it is and where a loop goes back to. Going forward
+over lines that are not to be run looks at nothing but O-words.
+"""
+
+import os
+
+from libc.math cimport fabs, floor
+
+from nml.errors import InterpError
+from rs274ngc.block cimport LINE_SIZE
+from rs274ngc.scan cimport read_integer, read_name, read_value, skip_comments, strip
+from rs274ngc.source cimport Source
+from rs274ngc.state cimport FEATURE_OWORD_N_ARGS, LOCALS, Frame, State, fail
+
+KEYWORDS = (
+    "sub", "endsub", "call", "return", "do", "while", "endwhile", "if", "elseif", "else", "endif", "break", "continue",
+    "repeat", "endrepeat",
+)
+BY_LENGTH = sorted(KEYWORDS, key=len, reverse=True)
+FILE_SUFFIX = ".ngc"
+
+
+cdef class Label:
+    """A loop or a condition that the program is inside of."""
+
+    cdef str kind           # while, do, repeat, if
+    cdef long position      # where the loop goes back to
+    cdef int line
+    cdef long count         # repeat: turns left, this one included
+    cdef bint taken         # if: a branch was run
+
+    def __cinit__(self, str kind, long position=0, int line=0, long count=0, bint taken=False):
+        self.kind, self.position, self.line, self.count, self.taken = kind, position, line, count, taken
+
+
+cdef class Flow:
+    """Where the program is, and how it gets elsewhere."""
+
+    def __init__(self, State s):
+        self.s = s
+        self.search_path = []
+
+    # --- Lines
+
+    cdef int read_raw(self) except -2:
+        """The next line of the file into the state: its length, -1 at the end of the file."""
+        cdef State s = self.s
+        cdef int size
+        self.line_start = self.source.position
+        size = self.source.next_line(s.raw, LINE_SIZE)
+        s.line = self.source.line
+        s.raw_size = max(size, 0)
+        if size == -2:
+            s.raw[0] = 0
+            s.size = 0
+            return fail(s, "Command too long")
+        return size
+
+    cdef int jump(self, long position, int line) except -1:
+        self.source.position = position
+        self.source.line = line
+        return 0
+
+    cdef tuple read_head(self, int* at):
+        """Label and keyword of the O-word at ``at``; the keyword is empty for a bare program number."""
+        cdef State s = self.s
+        cdef int number, start = at[0]
+        cdef char c
+        at[0] += 1
+        c = s.text[at[0]]
+        if c == c'<':
+            label = read_name(s, at)
+        else:
+            read_integer(s, at, &number)
+            label = str(number)
+        rest = s.text[at[0]:s.size].decode("latin-1")
+        for word in BY_LENGTH:
+            if rest.startswith(word):
+                at[0] += len(word)
+                return label, word
+        if rest and rest[0] not in "(;":
+            fail(s, "Unknown control command in o word" if rest[0].isalpha() else "Unexpected character after O-word", at[0])
+        return label, ""
+
+    def skip_to(self, str label, tuple keywords):
+        """Go on to the line with this label and one of these keywords; True if there is one, its tail is at ``self.tail``."""
+        cdef State s = self.s
+        cdef int size, i, number_end, at
+        cdef int from_line = s.line
+        cdef char c
+        while True:
+            self.line_start = self.source.position
+            size = self.source.next_line(s.raw, LINE_SIZE)
+            if size == -1:
+                return -1
+            s.line = self.source.line
+            s.raw_size = max(size, 0)
+            i = self.o_word_at(size)
+            if i < 0:
+                continue
+            strip(s)
+            at = skip_number(s)
+            found, keyword = self.read_head(&at)
+            if keyword == "sub" and "endsub" in keywords and found != label:
+                fail(s, "Nested subroutine definition", at)
+            if found == label and keyword in keywords:
+                return at, keyword
+
+    cdef int o_word_at(self, int size) noexcept:
+        """Where the raw line has its O-word, -1 if it has none."""
+        cdef State s = self.s
+        cdef int i = 0
+        cdef bint number = False
+        cdef char c
+        while i < size:
+            c = s.raw[i]
+            if c == c'o' or c == c'O':
+                return i
+            if c == c'n' or c == c'N':
+                number = True
+            elif not (c == c' ' or c == c'\t' or c == c'/' or (number and (c'0' <= c <= c'9' or c == c'.'))):
+                return -1
+            i += 1
+        return -1
+
+    def must_skip_to(self, str label, tuple keywords):
+        """``skip_to``, and an error when there is no such line."""
+        cdef int line = self.s.line
+        found = self.skip_to(label, keywords)
+        if found == -1:
+            fail(self.s, f"EOF in file:{self.source.path} seeking o-word: o<{label}> from line: {line}")
+        return found
+
+    # --- One O-line
+
+    cdef int o_line(self, int at) except -1:
+        """Do what the O-word at ``at`` of the stripped line says."""
+        label, keyword = self.read_head(&at)
+        if not keyword:
+            return self.bare(label, at)
+        if self.source is None and keyword != "call":
+            return fail(self.s, f"'{keyword}' needs a program", at)
+        ACTIONS[keyword](self, label, at)
+        return 0
+
+    cdef int bare(self, str label, int at) except -1:
+        """``O1234``: the beginning of a program or of a subprogram that ends with M99."""
+        if not self.s.fanuc_subs:
+            return fail(self.s, "DISABLE_FANUC_STYLE_SUB disabled in INI file, but found bare O-word", at)
+        return 0
+
+    cdef double value(self, int* at) except? -1.0e300:
+        """The expression after a keyword."""
+        cdef double result
+        if self.s.text[at[0]] != c'[':
+            fail(self.s, "Left bracket missing after O-word command", at[0])
+        read_value(self.s, at, &result)
+        return result
+
+    cdef int end_of_line(self, int at) except -1:
+        """Nothing but a comment may follow."""
+        if skip_comments(self.s, &at):
+            fail(self.s, "Unexpected character after O-word", at)
+        return 0
+
+    def do_sub(self, str label, int at):
+        """A definition that the program runs into: remember it, step over it."""
+        if len(self.s.frames) > 1 and self.s.frame.sub:
+            fail(self.s, "Nested subroutine definition", at)
+        self.s.subs[label] = (self.source.path, self.source.position, self.source.line)
+        self.must_skip_to(label, ("endsub",))
+
+    def do_endsub(self, str label, int at):
+        self.leave(label, at, "endsub")
+
+    def do_return(self, str label, int at):
+        self.leave(label, at, "return")
+
+    def do_call(self, str label, int at):
+        cdef State s = self.s
+        cdef int i = at
+        cdef double value
+        arguments = []
+        while s.text[i] == c'[':
+            read_value(s, &i, &value)
+            arguments.append(value)
+            if len(arguments) > ARGUMENTS_MAX:
+                fail(s, "Too many subroutine parameters", i)
+        self.end_of_line(i)
+        self.enter(label, arguments)
+
+    def do_while(self, str label, int at):
+        cdef Label known = self.s.frame.labels.get(label)
+        cdef Source source = self.source
+        cdef int i = at
+        cdef double condition
+        if known is not None and known.kind == "do":
+            condition = self.value(&i)
+            if condition != 0.0:
+                self.jump(known.position, known.line)
+            else:
+                del self.s.frame.labels[label]
+            return
+        start = self.line_start
+        condition = self.value(&i)
+        if condition != 0.0:
+            self.s.frame.labels[label] = Label("while", start, source.line - 1)
+        else:
+            self.s.frame.labels.pop(label, None)
+            self.must_skip_to(label, ("endwhile",))
+
+    def do_endwhile(self, str label, int at):
+        known = self.known(label, ("while",), "while/do", at)
+        self.jump(known.position, known.line)
+
+    def do_do(self, str label, int at):
+        self.s.frame.labels[label] = Label("do", self.source.position, self.source.line)
+
+    def do_repeat(self, str label, int at):
+        cdef int i = at
+        cdef double times = self.value(&i)
+        if times > 2.0e9:
+            fail(self.s, "Too many repetitions", at)
+        if times < 1.0:
+            self.must_skip_to(label, ("endrepeat",))
+        else:
+            self.s.frame.labels[label] = Label("repeat", self.source.position, self.source.line, <long>floor(times))
+
+    def do_endrepeat(self, str label, int at):
+        cdef Label known = self.known(label, ("repeat",), "repeat", at)
+        known.count -= 1
+        if known.count > 0:
+            self.jump(known.position, known.line)
+        else:
+            del self.s.frame.labels[label]
+
+    def do_break(self, str label, int at):
+        cdef Label known = self.known(label, ("while", "do", "repeat"), "while/do", at)
+        self.must_skip_to(label, LOOP_END[known.kind])
+        del self.s.frame.labels[label]
+
+    def do_continue(self, str label, int at):
+        cdef Label known = self.known(label, ("while", "do", "repeat"), "while/do", at)
+        if known.kind == "while":
+            self.jump(known.position, known.line)
+        else:
+            i, keyword = self.must_skip_to(label, LOOP_END[known.kind])
+            ACTIONS[keyword](self, label, i)
+
+    def do_if(self, str label, int at):
+        cdef int i = at
+        cdef bint taken = self.value(&i) != 0.0
+        self.s.frame.labels[label] = Label("if", taken=taken)
+        if not taken:
+            self.next_branch(label)
+
+    def next_branch(self, str label):
+        """Go to the next branch of a condition, and decide there."""
+        at, keyword = self.must_skip_to(label, ("elseif", "else", "endif"))
+        self.branch(label, at, keyword)
+
+    def branch(self, str label, int at, str keyword):
+        cdef Label known = self.known(label, ("if",), "'if'", at)
+        cdef int i = at
+        while True:
+            if keyword == "endif":
+                del self.s.frame.labels[label]
+                return
+            if not known.taken and (keyword == "else" or self.value(&i) != 0.0):
+                known.taken = True
+                return
+            at, keyword = self.must_skip_to(label, ("elseif", "else", "endif"))
+            i = at
+
+    def do_elseif(self, str label, int at):
+        self.branch(label, at, "elseif")
+
+    def do_else(self, str label, int at):
+        self.branch(label, at, "else")
+
+    def do_endif(self, str label, int at):
+        self.branch(label, at, "endif")
+
+    def known(self, str label, tuple kinds, str name, int at):
+        cdef Label found = self.s.frame.labels.get(label)
+        if found is None:
+            fail(self.s, f"{self.s.line}: undefined O-word label: '{label}'", at)
+        if found.kind not in kinds:
+            fail(self.s, f"{self.s.line}: no matching {name} label: '{label}' (found '{found.kind}')", at)
+        return found
+
+    # --- Calls
+
+    def enter(self, str label, list arguments, bint fanuc=False, long repeats=1):
+        """Call a subroutine: of this file, or of a file of its name."""
+        cdef State s = self.s
+        cdef Frame frame, caller = s.frame
+        cdef int k
+        if len(s.frames) > LEVELS_MAX:
+            fail(s, "Too many subroutine levels")
+        caller.source = self.source
+        if self.source is not None:
+            caller.position, caller.line = self.source.position, self.source.line
+        self.find(label, fanuc)
+        frame = Frame()
+        frame.sub = label
+        frame.fanuc = fanuc
+        frame.file = self.source.path
+        frame.repeats = repeats
+        frame.body, frame.body_line = self.source.position, self.source.line
+        if not fanuc:
+            for k in range(1, LOCALS + 1):
+                caller.locals[k] = s.params[k]
+                if k <= len(arguments):
+                    s.params[k] = arguments[k - 1]
+                elif not s.features & FEATURE_OWORD_N_ARGS:
+                    s.params[k] = 0.0
+            s.return_value = 0.0
+            s.value_returned = False
+        s.frames.append(frame)
+        s.frame = frame
+
+    def find(self, str label, bint fanuc):
+        """Be at the first line of a subroutine's body."""
+        cdef State s = self.s
+        cdef Source source
+        known = s.subs.get(label)
+        if known is not None:
+            path, position, line = known
+            if self.source is None or self.source.path != path:
+                self.source = Source(path)
+            self.jump(position, line)
+            return
+        from_line = s.line
+        source = self.source
+        if source is not None and self.find_here(label, fanuc):
+            return
+        path = self.sub_file(label)
+        if path is None:
+            self.source = s.frame.source
+            if self.source is not None:
+                self.jump(s.frame.position, s.frame.line)
+                s.line = from_line
+                fail(s, f"EOF in file:{self.source.path} seeking o-word: o<{label}> from line: {from_line}")
+            fail(s, f"Unable to open file <{label}{FILE_SUFFIX}>")
+        self.source = Source(path)
+        if not self.find_here(label, fanuc):
+            fail(s, f"EOF in file:{path} seeking o-word: o<{label}> from line: {from_line}")
+
+    def find_here(self, str label, bint fanuc):
+        """Look for a subroutine from here to the end of the file, then from its beginning."""
+        cdef State s = self.s
+        keywords = ("",) if fanuc else ("sub",)
+        for start in (None, 0):
+            if start is not None:
+                self.jump(0, 0)
+            if self.skip_to(label, keywords) != -1:
+                s.subs[label] = (self.source.path, self.source.position, self.source.line)
+                return True
+        return False
+
+    def sub_file(self, str label):
+        """Path of a subroutine file, None if there is none."""
+        for folder in self.search_path:
+            path = os.path.join(folder, label + FILE_SUFFIX)
+            if os.path.isfile(path):
+                return path
+        return None
+
+    def leave(self, str label, int at, str keyword):
+        """endsub and return, with a value"""
+        cdef State s = self.s
+        cdef int i = at
+        cdef double value
+        if s.frame.fanuc:
+            fail(s, "Fanuc 'O....' subroutine definition must end with 'M99'", at)
+        if not s.frame.sub or s.frame.sub != label:
+            if not s.frame.sub:
+                fail(s, f"{s.line}: not in a subroutine definition: '{label}'", at)
+            fail(s, f"{s.line}: no matching label: '{label}' (found '{s.frame.sub}' in line {s.frame.body_line})", at)
+        returned = False
+        value = 0.0
+        if s.text[i] == c'[':
+            read_value(s, &i, &value)
+            returned = True
+        self.end_of_line(i)
+        self.pop()
+        s.return_value = value
+        s.value_returned = returned
+
+    def pop(self):
+        """Back to the caller."""
+        cdef State s = self.s
+        cdef Frame done = s.frames.pop(), caller
+        cdef int k
+        caller = s.frames[len(s.frames) - 1]
+        s.frame = caller
+        self.source = caller.source
+        if self.source is not None:
+            self.jump(caller.position, caller.line)
+        if not done.fanuc:
+            for k in range(1, LOCALS + 1):
+                s.params[k] = caller.locals[k]
+        if done.restore:
+            s.interp.restore_context(done.saved)
+
+    def unwind(self):
+        """After an error or an abort: back to the line after the outermost call."""
+        while len(self.s.frames) > 1:
+            self.s.frame.restore = False
+            self.pop()
+
+    def end_subprogram(self):
+        """M99: the caller, or the next of its repetitions, goes on; in the main program its first line."""
+        cdef State s = self.s
+        if s.frame.sub and not s.frame.fanuc:
+            fail(s, "Found 'M99' instead of 'O endsub' after 'O sub'")
+        if not s.frame.sub:
+            if self.source is not None:
+                self.jump(0, 0)
+                s.frame.labels.clear()
+            return
+        s.frame.repeats -= 1
+        if s.frame.repeats > 0:
+            s.frame.labels.clear()
+            self.jump(s.frame.body, s.frame.body_line)
+        else:
+            self.pop()
+
+
+LOOP_END = {"while": ("endwhile",), "do": ("while",), "repeat": ("endrepeat",)}
+ACTIONS = {word: getattr(Flow, "do_" + word) for word in KEYWORDS}
+"""What each O-word does: called with the Flow, the label and the place after the keyword."""
+
+
+cdef int skip_number(State s) except -1:
+    """Where the stripped line goes on after a slash and its line number."""
+    cdef int i = 0
+    if s.text[i] == c'/':
+        i += 1
+    if s.text[i] == c'n':
+        i += 1
+        while c'0' <= s.text[i] <= c'9' or s.text[i] == c'.':
+            i += 1
+    return i

@@ -1,0 +1,76 @@
+"""What of the INI file concerns the language: sections RS274NGC, EMCIO, DISPLAY, TRAJ and the axes."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from nml.errors import ConfigError
+
+TRUE = {"1", "yes", "true", "on", "y", "t"}
+
+
+def number(ini: Any, section: str, key: str, default: float) -> float:
+    """A number of the INI file; ConfigError where it is none."""
+    text = ini.find(section, key)
+    if text is None:
+        return default
+    try:
+        return float(int(text, 0)) if text.strip().lower().startswith("0x") else float(text)
+    except ValueError:
+        raise ConfigError(f"invalid [{section}]{key} in INI file: '{text}' is not a number") from None
+
+
+def flag(ini: Any, section: str, key: str, default: bool = False) -> bool:
+    """A yes or no of the INI file."""
+    text = ini.find(section, key)
+    return default if text is None else text.strip().lower() in TRUE
+
+
+def folder_of(ini: Any) -> str:
+    """The folder that relative paths of the INI file begin in."""
+    path = getattr(ini, "path", None) or getattr(ini, "filename", None)
+    return os.path.dirname(os.path.abspath(str(path))) if path else os.getcwd()
+
+
+def expanded(base: str, path: str) -> str:
+    """A path of the INI file as an absolute one."""
+    return os.path.join(base, os.path.expanduser(path.strip()))
+
+
+def apply_settings(interp: Any, ini: Any) -> None:
+    """Set the interpreter as the INI file says."""
+    state = interp.state
+    base = folder_of(ini)
+    section = "RS274NGC"
+    path = ini.find(section, "PARAMETER_FILE")
+    if path is not None:
+        interp.parameter_file = expanded(base, path)
+    state.features = int(number(ini, section, "FEATURES", number(ini, section, "FEATURE", 12)))
+    for bit, key in enumerate(
+        ("RETAIN_G43", "OWORD_NARGS", "INI_VARS", "HAL_PIN_VARS", "NO_DOWNCASE_OWORD", "OWORD_WARNONLY")
+    ):
+        if ini.find(section, key) is not None:
+            state.features = (state.features & ~(1 << bit)) | (flag(ini, section, key) << bit)
+    state.arc_tolerance_inch = number(
+        ini, section, "CENTER_ARC_RADIUS_TOLERANCE_INCH", state.arc_tolerance_inch
+    )
+    state.arc_tolerance_mm = number(ini, section, "CENTER_ARC_RADIUS_TOLERANCE_MM", state.arc_tolerance_mm)
+    state.orient_offset = number(ini, section, "ORIENT_OFFSET", 0.0)
+    state.g92_persistent = not flag(ini, section, "DISABLE_G92_PERSISTENCE")
+    state.fanuc_subs = not flag(ini, section, "DISABLE_FANUC_STYLE_SUB")
+    state.subroutine_path = [
+        expanded(base, folder) for folder in (ini.find(section, "SUBROUTINE_PATH") or "").split(":") if folder.strip()
+    ]
+    prefix = ini.find("DISPLAY", "PROGRAM_PREFIX")
+    state.program_prefix = expanded(base, prefix) if prefix else ""
+    state.spindles = min(8, max(1, int(number(ini, "TRAJ", "SPINDLES", 1))))
+    state.random_toolchanger = flag(ini, "EMCIO", "RANDOM_TOOLCHANGER")
+    state.change_with_spindle_on = flag(ini, "EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON")
+    state.wrapped_rotary = sum(
+        1 << (3 + k) for k, axis in enumerate("ABC") if flag(ini, f"AXIS_{axis}", "WRAPPED_ROTARY")
+    )
+    for k, axis in enumerate("ABC"):
+        joint = ini.find(f"AXIS_{axis}", "LOCKING_INDEXER_JOINT")
+        if joint is not None:
+            state.set_indexer(k, int(number(ini, f"AXIS_{axis}", "LOCKING_INDEXER_JOINT", -1)))
