@@ -15,24 +15,27 @@ log = logging.getLogger(__name__)
 
 
 class OperatorLine:
-    """The way to the operator. A full buffer loses the text, but never stops the machine's controller."""
+    """The way to the operator. A full buffer loses the text, but never stops the machine's controller.
+
+    ``serial`` is the number of the command that is being carried out, 0 if there is none; texts carry it as ``id``.
+    """
 
     def __init__(self, channel: Channel) -> None:
         self._channel = channel
-        self._number = 0
+        self.serial = 0
 
     def error(self, text: str) -> None:
         """Something went wrong."""
         log.error("%s", text)
-        self._write(EMC_OPERATOR_ERROR(id=self._number, error=_cut(text)))
+        self._write(EMC_OPERATOR_ERROR(id=self.serial, error=_cut(text)))
 
     def text(self, text: str) -> None:
         """Something the operator asked to know."""
-        self._write(EMC_OPERATOR_TEXT(id=self._number, text=_cut(text)))
+        self._write(EMC_OPERATOR_TEXT(id=self.serial, text=_cut(text)))
 
     def display(self, text: str) -> None:
         """Something the operator should know."""
-        self._write(EMC_OPERATOR_DISPLAY(id=self._number, display=_cut(text)))
+        self._write(EMC_OPERATOR_DISPLAY(id=self.serial, display=_cut(text)))
 
     def from_motion(self, error: EMCMOT_ERROR, places: Places) -> None:
         """Forward a text of motion; a move's id becomes the line of the program that asked for it."""
@@ -44,7 +47,6 @@ class OperatorLine:
         {11: self.error, 12: self.text, 13: self.display}.get(error.kind, self.error)(text)
 
     def _write(self, message: EMC_OPERATOR_ERROR | EMC_OPERATOR_TEXT | EMC_OPERATOR_DISPLAY) -> None:
-        self._number += 1
         try:
             self._channel.write(message)
         except NmlError as error:

@@ -31,6 +31,8 @@ class Runner:
         self._pending_error = ""
         self.stepping = False
         self.ended = False
+        self.serial = 0
+        """Serial number of the command that started what is under way; 0: nothing is."""
         self.saver = Saver(task.plan.save_parameters)
 
     def save_parameters(self) -> None:
@@ -42,14 +44,15 @@ class Runner:
     def run_program(self, line: int) -> None:
         """Start the loaded program; ``line`` above 1 skips what comes before."""
         self.ended = False
-        self._start(lambda: self._task.plan.start(line))
+        self._start(lambda: self._task.plan.start(line), self._task.echo)
 
     def run_mdi(self, text: str) -> None:
         """Queue an MDI line; it runs at once if nothing else does."""
-        self._task.mdi_queue.append(text)
+        self._task.mdi_queue.append((text, self._task.echo))
 
-    def _start(self, begin: Callable[[], None]) -> None:
+    def _start(self, begin: Callable[[], None], serial: int) -> None:
         self._begin = begin
+        self.serial = serial
         self._set(Interp.READING)
 
     def _set(self, state: Interp) -> None:
@@ -64,9 +67,9 @@ class Runner:
             task.operator.error(self.saver.take_failure())
         self._synchronise_when_quiet()
         if self._begin is None and task.mdi_queue and not task.plan.active and not task.paused:
-            text = task.mdi_queue.popleft()
+            text, serial = task.mdi_queue.popleft()
             task.mdi_text = text
-            self._start(lambda: task.plan.start_mdi(text))
+            self._start(lambda: task.plan.start_mdi(text), serial)
         if self._begin is not None and not task.plan.must_synch:
             begin, self._begin = self._begin, None
             self._guard(begin)
@@ -116,6 +119,7 @@ class Runner:
             return
         plan.finish()
         self.stepping = False
+        self.serial = 0
         task.canon.places.forget()
         self.save_parameters()
         self._set(Interp.READING if task.mdi_queue else Interp.IDLE)
@@ -190,6 +194,7 @@ class Runner:
         self._begin = None
         self._pending_error = ""
         self.stepping = False
+        self.serial = 0
         task.paused = False
         task.mdi_queue.clear()
         task.sequencer.abort()

@@ -78,13 +78,15 @@ class Task:
         self.block_delete = True
         self.input_timeout = False
         self.offsets: dict[str, object] = {}
-        self.mdi_queue: deque[str] = deque()
+        self.mdi_queue: deque[tuple[str, int]] = deque()
         self.mdi_text = ""
         self.debug = config.debug
         self.echo = 0
         self.command_type = 0
         self.failed = False
         self.canon = TaskCanon(config, motion, io)
+        self.canon.input_timed_out = lambda: self.input_timeout
+        self.canon.optional_stop, self.canon.block_delete = self.optional_stop, self.block_delete
         self.sequencer = Sequencer(config, self.canon.queue, motion, io, self)
         self.plan = Plan(ini, self.canon, self.sequencer)
         self.runner = Runner(self)
@@ -106,9 +108,11 @@ class Task:
         """Once around: look, obey, go on, report."""
         self.motion.poll()
         self.io.poll()
+        self.operator.serial = self._serial_in_force()
         self.supervisor.look()
         self._read_commands()
         self._obey()
+        self.operator.serial = self._serial_in_force()
         self.runner.advance()
         self.motion.beat()
         self.status.write(self)
@@ -145,6 +149,10 @@ class Task:
         """How the last command stands: done, executing, error."""
         return ERROR if self.failed else EXEC if self.busy else DONE
 
+    def _serial_in_force(self) -> int:
+        """The command that texts of now belong to: that of the program or MDI line, else the last until it is done."""
+        return self.runner.serial or (self.echo if self.busy else 0)
+
     # --- Commands
 
     def _read_commands(self) -> None:
@@ -180,7 +188,7 @@ class Task:
         self.failed = False
         self.command_type = message.TYPE_ID
         if isinstance(message, Command):
-            self.echo = message.serial_number
+            self.echo = self.operator.serial = message.serial_number
         name = type(message).__name__
         rule = RULES.get(message.TYPE_ID)
         try:

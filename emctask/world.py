@@ -6,6 +6,8 @@ have finished everything that was queued before, so that an answer can never be 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from emctask.config import MachineConfig
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
@@ -33,6 +35,7 @@ class WorldModel(MoveCanon):
         self.config = config
         self.motion = motion
         self.io = io
+        self.input_timed_out: Callable[[], bool] = lambda: False
         self.spindles = [SpindleState() for _ in range(MAX_SPINDLES)]
         self.set_limits(config.max_axis_velocities, config.max_axis_accelerations, config.axis_mask)
 
@@ -155,9 +158,13 @@ class WorldModel(MoveCanon):
         return int(bool(self.motion.status.enables_new & Enables.FH))
 
     def get_external_digital_input(self, index: int, default: int) -> int:
+        if self.input_timed_out():
+            return -1
         return int(bool(self.motion.status.synch_di[index])) if 0 <= index < self.motion.status.num_dio else default
 
     def get_external_analog_input(self, index: int, default: float) -> float:
+        if self.input_timed_out():
+            return -1.0
         return self.motion.status.analog_input[index] if 0 <= index < self.motion.status.num_aio else default
 
     def get_external_offset_applied(self) -> int:
