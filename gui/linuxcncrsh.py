@@ -165,6 +165,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("-e", "--enablepw", default=ENABLE_PASSWORD, help="password of `set enable` (default EMCTOO)")
     parser.add_argument("-s", "--sessions", type=int, default=-1, help="most connections at a time (default: all)")
     parser.add_argument("--bind", metavar="ADDRESS", help="address to listen on; empty: all")
+    parser.add_argument("--path", metavar="FOLDER", help="where programs are, for callers that give it")
     parser.add_argument("-ini", metavar="FILE", help="INI file, for callers that give it")
     return parser
 

@@ -63,18 +63,26 @@ class Configuration:
         words = shlex.split(self.ini.find(section, key, default))
         module = MODULES.get(words[0]) if words else None
         if module is not None and importlib.util.find_spec(module) is not None:
-            return [*python_module(module), *words[1:], "-ini", str(self.path)]
-        executable = words and shutil.which(words[0], path=self._search_path())
+            return [*python_module(module), "-ini", str(self.path), *words[1:]]
+        executable = words and self._executable(words[0])
         if executable:
-            return [executable, *words[1:], "-ini", str(self.path)]
+            return [executable, "-ini", str(self.path), *words[1:]]
         raise ConfigError(
             f"[{section}]{key} = {' '.join(words)}: no such program; "
             f"one of {', '.join(sorted(MODULES))} or an executable is allowed",
             self.ini.place(section, key),
         )
 
+    def _executable(self, name: str) -> str | None:
+        """Where a program is: a path relative to the INI file, or a name on the search path."""
+        if os.sep in name:
+            return shutil.which(str(self.folder / name))
+        return shutil.which(name, path=f"{self.folder}{os.pathsep}{self._search_path()}")
+
     def _search_path(self) -> str:
-        return os.pathsep.join([str(self.folder / "bin"), str(self.folder), os.environ.get("PATH", os.defpath)])
+        """The machine's own programs, ours beside this Python, then everybody's."""
+        beside = str(Path(sys.executable).parent)
+        return os.pathsep.join([str(self.folder / "bin"), beside, os.environ.get("PATH", os.defpath)])
 
     def _nml_file(self) -> Path | None:
         name = self.ini.find("EMC", "NML_FILE")
@@ -115,7 +123,7 @@ class Configuration:
             "HALLIB_DIR": str(HALLIB),
             "HALLIB_PATH": f".:{HALLIB}",
             "LINUXCNC_NCFILES_DIR": str(NC_FILES),
-            "PATH": f"{self.folder / 'bin'}{os.pathsep}{variables.get('PATH', os.defpath)}",
+            "PATH": self._search_path(),
             "PYTHONPATH": os.pathsep.join(filter(None, [str(PACKAGES_FOLDER), variables.get("PYTHONPATH")])),
         }
         if self.nml_file is not None:

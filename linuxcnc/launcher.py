@@ -19,6 +19,7 @@ from nml import clock, namespace
 if TYPE_CHECKING:
     from linuxcnc.machine import Machine
 
+COMPATIBLE = {"r": "do not redirect output", "v": "be verbose", "d": "print debug messages", "k": "continue on errors"}
 POLL = 0.05  # host seconds between looks at the processes
 
 
@@ -56,6 +57,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("ini", type=Path, metavar="INI", help="INI file of the machine")
     parser.add_argument("--run", type=Path, metavar="FILE", help="switch on, home, run this program and end")
     parser.add_argument("--speed", type=float, metavar="N", help="simulate N times faster than real time")
+    for letter, meaning in COMPATIBLE.items():
+        parser.add_argument(f"-{letter}", action="store_true", help=f"{meaning}; accepted for LinuxCNC's sake")
     parser.add_argument("--namespace", metavar="NAME", help="name of this machine where several run on one host")
     return parser
 
@@ -102,7 +105,6 @@ def _follow_display(machine: Machine) -> int:
     while display.process.poll() is None:
         machine.check()
         clock.host_sleep(POLL)
-    machine.children.remove(display)
     return abs(display.process.returncode)
 
 

@@ -92,7 +92,9 @@ class Machine:
 
     def start_display(self) -> Child:
         """Start the display that the INI names, in the foreground."""
-        return self._spawn("display", self.configuration.display(), foreground=True)
+        display = self._spawn("display", self.configuration.display(), foreground=True)
+        self.children.remove(display)
+        return display
 
     def _spawn(self, name: str, command: list[str], *, foreground: bool = False) -> Child:
         """Start one process; in the background it gets a session of its own, so that Ctrl-C reaches only us."""

@@ -15,16 +15,17 @@ def test_the_programs_are_modules_of_ours(tmp_path):
     found = configuration(tmp_path)
     assert found.task[1:4] == ["-P", "-m", "emctask"]
     assert found.io[3] == "emcio"
-    assert found.display()[3:] == ["gui.linuxcncrsh", "--port", "0", "-ini", str(tmp_path / "mill_mm.ini")]
+    assert found.display()[3:] == ["gui.linuxcncrsh", "-ini", str(tmp_path / "mill_mm.ini"), "--port", "0"]
     assert found.halui is None
 
 
-def test_a_display_may_be_any_executable(tmp_path):
+@pytest.mark.parametrize("name", ["myscreen", "./myscreen"])
+def test_a_display_may_be_any_executable(tmp_path, name):
     screen = tmp_path / "myscreen"
     screen.write_text("#!/bin/sh\n")
     screen.chmod(0o755)
-    found = configuration(tmp_path, {"DISPLAY.DISPLAY": "myscreen --big"})
-    assert found.display() == [str(screen), "--big", "-ini", str(tmp_path / "mill_mm.ini")]
+    found = configuration(tmp_path, {"DISPLAY.DISPLAY": f"{name} --big"})
+    assert found.display() == [str(screen), "-ini", str(tmp_path / "mill_mm.ini"), "--big"]
 
 
 def test_hal_files_come_in_their_order(tmp_path):
