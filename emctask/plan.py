@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import Enum, auto
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from emctask.canon import TaskCanon
 from emctask.places import Modes
 from nml import clock
-from nml.errors import InterpError, PyemcError
+from nml.errors import InterpError
 from nml.inifile import IniFile
 from rs274ngc.interp import (
     INTERP_ENDFILE,
@@ -205,8 +204,8 @@ class Plan:
         """Write the parameter file, if there is one."""
         self.interp.save_parameters()
 
-    def describe(self, error: PyemcError) -> str:
+    def describe(self, error: Exception) -> str:
         """An interpreter's error for the operator: ``file:line:column: message``."""
         if isinstance(error, InterpError) and error.place is None and self.source is Source.PROGRAM:
-            return f"{Path(self.file).name}:{self.interp.line}: {error.message}"
+            return f"{self.file}:{self.interp.line}: {error.message}"
         return str(error)

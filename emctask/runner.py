@@ -7,6 +7,7 @@ soon as motion stands the interpreter takes over the place where that is.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,8 @@ from nml.errors import PyemcError
 
 if TYPE_CHECKING:
     from emctask.task import Task
+
+log = logging.getLogger(__name__)
 
 
 class Runner:
@@ -92,10 +95,16 @@ class Runner:
         task = self._task
         try:
             work()
-        except PyemcError as error:
-            task.operator.error(task.plan.describe(error))
-            task.plan.stop_reading()
-            self._pending_error = str(error)
+        except (PyemcError, OSError) as error:
+            self._stop_reading(task.plan.describe(error))
+        except Exception as error:  # a flaw of ours must not leave a machine without its controller
+            log.exception("internal error")
+            self._stop_reading(f"internal error in the interpreter: {type(error).__name__}: {error}")
+
+    def _stop_reading(self, text: str) -> None:
+        self._task.operator.error(text)
+        self._task.plan.stop_reading()
+        self._pending_error = text
 
     def _synchronise_when_quiet(self) -> None:
         task = self._task
