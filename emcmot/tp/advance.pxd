@@ -6,3 +6,5 @@ from emcmot.tp.model cimport TpState
 
 cdef void advance(TpState* tp) noexcept nogil
 cdef int64_t current_segment(const TpState* tp) noexcept nogil
+cdef int64_t current_raw(const TpState* tp) noexcept nogil
+cdef int64_t current_id(const TpState* tp) noexcept nogil

@@ -47,6 +47,35 @@ cdef int64_t current_segment(const TpState* tp) noexcept nogil:
     return span.seg - (span.kind == SPAN_BLEND and span.u0 + tp.u < span.trim)
 
 
+cdef int64_t current_raw(const TpState* tp) noexcept nogil:
+    """Index of the executing programmed move; raw_next when there is none. In a chord, by the share of its way."""
+    cdef const Segment* seg
+    cdef const Span* span
+    cdef int64_t index
+    cdef double way = 0.0, reached
+    cdef int k
+    if tp.active >= tp.span_tail:
+        return tp.raw_next
+    index = current_segment(tp)
+    seg = _seg(tp, index)
+    if seg.raw_count == 1:
+        return seg.raw_first
+    span = _span(tp, tp.active)
+    reached = span.u0 + tp.u
+    if span.kind == SPAN_BLEND:
+        reached += seg.length - span.trim if index < span.seg else -span.trim
+    for k in range(seg.raw_count):
+        way += tp.raws[(seg.raw_first + k) & tp.raw_mask].length
+        if way > reached:
+            return seg.raw_first + k
+    return seg.raw_first + seg.raw_count - 1
+
+
+cdef int64_t current_id(const TpState* tp) noexcept nogil:
+    """Motion id of the executing move, 0 when there is none."""
+    return tp.raws[current_raw(tp) & tp.raw_mask].id if tp.active < tp.span_tail else 0
+
+
 cdef int _holding(const TpState* tp) noexcept nogil:
     if tp.paused or tp.aborting or tp.feed_inhibit:
         return 1
@@ -72,6 +101,7 @@ cdef void advance(TpState* tp) noexcept nogil:
 
 cdef void _drop_queue(TpState* tp) noexcept nogil:
     cdef int i
+    tp.raw_next = tp.raw_tail
     tp.seg_head = tp.seg_built = tp.seg_tail
     tp.active = tp.settled = tp.new_spans = tp.span_tail
     tp.corner_known = 0
@@ -153,7 +183,7 @@ cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
     """Go on to the next span; 0 where the path ends."""
     cdef const Span* following
     tp.w = 0.0 if span.stop else tp.w * span.ratio * span.ratio
-    if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.seg_built < tp.seg_tail):
+    if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.raw_next < tp.raw_tail or tp.seg_built < tp.seg_tail):
         tp.w = 0.0                                   # at the end of what is built so far, but not of the queue
         return 0
     tp.active += 1
@@ -164,7 +194,7 @@ cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
         return 0
     following = _span(tp, tp.active)
     tp.seg_head = following.seg - (following.kind == SPAN_BLEND)
-    if tp.stepping and _seg(tp, current_segment(tp)).id != tp.step_id:
+    if tp.stepping and current_id(tp) != tp.step_id:
         tp.stepping = 0
         tp.paused = 1
     return 1

@@ -102,8 +102,8 @@ cdef double _tolerance(const Segment* a, const Segment* b, double sharpness) noe
     if a.term != TP_TERM_BLEND:
         return EXACT_TOLERANCE if sharpness < EXACT_KINK else 0.0
     if b.term == TP_TERM_BLEND and b.tolerance > 0.0 and a.tolerance > 0.0:
-        return fmin(a.tolerance, b.tolerance)
-    return a.tolerance if a.tolerance > 0.0 else INFINITY
+        return fmin(a.tolerance - a.deviation, b.tolerance - b.deviation)
+    return a.tolerance - a.deviation if a.tolerance > 0.0 else INFINITY
 
 
 cdef double _trim_for_speed(

@@ -1,11 +1,12 @@
 """The planner's own data: segments as programmed, spans as planned, and the state of one planner.
 
-A *segment* is one programmed move.  Its parameter u runs from 0 to `length`, one unit of u being one unit of feed
+A *raw* segment is one programmed move. A *segment* is one move as planned: a raw one, or the chord that stands for a run
+of short ones within their tolerance. Its parameter u runs from 0 to `length`, one unit of u being one unit of feed
 distance (xyz length, else uvw length, else degrees), so du/dt is the feed.  The *planned path* is a chain of spans: a
 span is a stretch of a straight move, of an arc, or of the blend that replaces the corner between two segments.  Speed
 is planned in w = (du/dt)^2; inside a span w is piecewise linear in u, that is, d2u/dt2 is piecewise constant.
 
-Segments and spans live in rings; an index counts up for ever and `index & mask` is its place.
+Raws, segments and spans live in rings; an index counts up for ever and `index & mask` is its place.
 Shared by geometry, limits, build, advance and tp; nothing outside this folder sees it.
 """
 
@@ -48,6 +49,10 @@ ctypedef struct Segment:
     double radius            # at the start
     double growth            # d(radius)/du, spirals
     double omega             # d(angle)/du
+    int joins                # raws: may share a chord with the raw before
+    int64_t raw_first        # raws that it stands for
+    int raw_count
+    double deviation         # how far the raws may be from it; their tolerance less this is left for blends
     double trim_start        # u taken by the blend before, and by the blend after
     double trim_end
     int exit_stop            # its end can only be passed at rest
@@ -88,10 +93,16 @@ ctypedef struct TpState:
     double vel[AXES]
     double goal[AXES]        # end of the last segment added
 
+    Segment* raws
+    TpIo* ios                # of the raws
+    int raw_mask
+    int capacity             # raws that tp_add accepts
+    int64_t raw_next         # next raw to become part of a segment
+    int64_t raw_tail         # one past the newest
+    int64_t io_taken         # outputs of the raws before this one have been handed out
+
     Segment* segs
-    TpIo* ios
     int seg_mask
-    int capacity             # segments that tp_add accepts
     int64_t seg_head         # oldest segment still needed
     int64_t seg_tail         # one past the newest
     int64_t seg_built        # one past the last segment that spans exist of
@@ -127,7 +138,6 @@ ctypedef struct TpState:
     int stepping
     int aborting
     int64_t step_id
-    int64_t io_taken         # outputs of the segments before this one have been handed out
 
     double spindle_revs[8]
     double spindle_rps[8]

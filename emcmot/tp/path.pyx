@@ -12,18 +12,19 @@ from libc.stdint cimport int64_t
 from emcmot.tp.corner cimport Corner, blend_derivatives, blend_spans, decide_corner
 from emcmot.tp.geometry cimport derivatives, norm
 from emcmot.tp.limits cimport acceleration_range, entry_limit
+from emcmot.tp.merge cimport take_segment
 from emcmot.tp.model cimport AXES, SPAN_ARC, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
 from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FH_ENABLED, TP_FS_ENABLED
 
 cdef enum:
-    SEGMENTS_PER_PERIOD = 32
+    STEPS_PER_PERIOD = 96        # a segment takes three: its corner, the blend before it, itself
     SPANS_PER_STEP = 64          # spans that one step of building may add
     SPANS_PER_SWEEP = 512        # spans per period that a change of feed caps recomputes
     MOTION_TRAVERSE = 1
 
 cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
 cdef double ARC_SPAN_ANGLE = 0.04
-cdef double ARC_BLEND_TIGHT = 0.985  # of blends with arcs, whose derivatives are not quite linear in u
+cdef double ARC_BLEND_TIGHT = 0.98  # of blends with arcs, whose derivatives are not quite linear in u
 
 
 cdef inline Span* _span(const TpState* tp, int64_t index) noexcept nogil:
@@ -114,20 +115,31 @@ cdef void sweep_caps(TpState* tp) noexcept nogil:
 # --- building ---------------------------------------------------------------------------------------------------------
 
 cdef void extend(TpState* tp) noexcept nogil:
-    """Build spans of queued segments, as far as the ring of spans and this period's share of work allow."""
-    cdef int steps = 0
+    """Build spans of queued moves, as far as the ring of spans and this period's share of work allow.
+
+    The end of the last segment is left unbuilt, and a run of short moves waits to become longer, until the machine would
+    have to slow down for want of it.
+    """
+    cdef int steps = 0, urgent
     cdef int64_t last
-    while steps < SEGMENTS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP < tp.span_mask:
-        last = tp.seg_built - 1
+    while steps < STEPS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP < tp.span_mask:
+        if tp.seg_tail - tp.seg_head + 2 >= tp.seg_mask:
+            return
         steps += 1
+        last = tp.seg_built - 1
+        urgent = tp.active + 1 >= min(tp.settled, tp.span_tail)
+        if tp.seg_built == tp.seg_tail:
+            take_segment(tp, urgent)
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
             _plan_corner(tp, last)
         elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY:
+            if not tp.corner_known and not urgent:
+                return
             _add_body(tp, last)
         elif tp.seg_built < tp.seg_tail:
             _start_segment(tp, tp.seg_built)
         else:
-            break
+            return
 
 
 cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
@@ -203,6 +215,7 @@ cdef void _cut_body(TpState* tp, int64_t last, double end) noexcept nogil:
     tp.body_end = end
     tp.held_span = -1
     tp.new_spans = min(tp.new_spans, tp.span_tail - 1)
+    tp.settled = min(tp.settled, tp.new_spans)
 
 
 cdef int _active_fits(const TpState* tp) noexcept nogil:

@@ -9,14 +9,16 @@ from libc.stdint cimport int64_t
 from libc.stdlib cimport calloc, free
 from libc.string cimport memcpy, memset
 
-from emcmot.tp.advance cimport advance, current_segment
+from emcmot.tp.advance cimport advance, current_id, current_raw, current_segment
 from emcmot.tp.geometry cimport norm, shape
+from emcmot.tp.merge cimport can_join
 from emcmot.tp.model cimport AXES, SPAN_BLEND, UNIT_XYZ, Segment, Span, TpState
 from emcmot.tp.path cimport feed_scale
 
 cdef enum:
     SPAN_RING = 8192
-    SEGMENT_MARGIN = 8           # segments that a blend still needs behind the executing one
+    SEGMENT_RING = 4096
+    RAW_MARGIN = 8               # raws that a blend still needs behind the executing one
 
 cdef double SHORTEST_MOVE = 1e-9     # lu or degrees; shorter moves only hand their outputs to the next one
 
@@ -25,8 +27,8 @@ cdef inline TpState* _state(const Tp* tp) noexcept nogil:
     return <TpState*>tp
 
 
-cdef inline Segment* _seg(const TpState* s, int64_t index) noexcept nogil:
-    return &s.segs[index & s.seg_mask]
+cdef inline Segment* _raw(const TpState* s, int64_t index) noexcept nogil:
+    return &s.raws[index & s.raw_mask]
 
 
 # --- life -------------------------------------------------------------------------------------------------------------
@@ -38,14 +40,16 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     if s == NULL:
         return NULL
     s.capacity = queue_size if queue_size > 4 else 4
-    while ring < s.capacity + SEGMENT_MARGIN:
+    while ring < s.capacity + RAW_MARGIN:
         ring *= 2
-    s.seg_mask = ring - 1
+    s.raw_mask = ring - 1
+    s.seg_mask = SEGMENT_RING - 1
     s.span_mask = SPAN_RING - 1
-    s.segs = <Segment*>calloc(ring, sizeof(Segment))
+    s.raws = <Segment*>calloc(ring, sizeof(Segment))
     s.ios = <TpIo*>calloc(ring, sizeof(TpIo))
+    s.segs = <Segment*>calloc(SEGMENT_RING, sizeof(Segment))
     s.spans = <Span*>calloc(SPAN_RING, sizeof(Span))
-    if s.segs == NULL or s.ios == NULL or s.spans == NULL:
+    if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL:
         tp_free(<Tp*>s)
         return NULL
     s.dt = 0.001
@@ -60,8 +64,9 @@ cdef void tp_free(Tp* tp) noexcept nogil:
     cdef TpState* s = _state(tp)
     if s == NULL:
         return
-    free(s.segs)
+    free(s.raws)
     free(s.ios)
+    free(s.segs)
     free(s.spans)
     free(s)
 
@@ -81,7 +86,7 @@ cdef int tp_set_axis_limits(Tp* tp, int axis, double vel, double acc, double jer
 
 
 cdef inline int _idle(const TpState* s) noexcept nogil:
-    return s.active >= s.span_tail and s.seg_built >= s.seg_tail
+    return s.active >= s.span_tail and s.raw_next >= s.raw_tail and s.seg_built >= s.seg_tail
 
 
 cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
@@ -102,13 +107,15 @@ cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
 # --- queue ------------------------------------------------------------------------------------------------------------
 
 cdef inline int _free(const TpState* s) noexcept nogil:
-    return s.capacity - <int>(s.seg_tail - s.seg_head)
+    """Room for raws: those of the segments that are still needed count."""
+    cdef int64_t oldest = s.segs[s.seg_head & s.seg_mask].raw_first if s.seg_head < s.seg_tail else s.raw_next
+    return s.capacity - <int>(s.raw_tail - oldest)
 
 
 cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
     """Queue a move from the end of the last one. A move of no length only passes its outputs on to the next."""
     cdef TpState* s = _state(tp)
-    cdef Segment* seg = _seg(s, s.seg_tail)
+    cdef Segment* seg = _raw(s, s.raw_tail)
     if _free(s) <= 0 or s.aborting:
         return TP_FULL
     if not (isfinite(given.vel) and given.vel > 0.0 and given.vel_max > 0.0) or shape(seg, given, s.goal) != TP_OK:
@@ -133,15 +140,16 @@ cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
     seg.exit_stop = 1
     seg.exit_ratio = 1.0
     memcpy(s.goal, seg.end, sizeof(s.goal))
-    s.seg_tail += 1
-    _seg(s, s.seg_tail).has_io = 0
+    seg.joins = s.raw_tail > 0 and can_join(_raw(s, s.raw_tail - 1), seg)
+    s.raw_tail += 1
+    _raw(s, s.raw_tail).has_io = 0
     return TP_OK
 
 
 cdef void _merge_io(TpState* s, const TpIo* io) noexcept nogil:
     """Outputs for the segment that is added next, on top of what moves of no length have left for it."""
-    cdef Segment* seg = _seg(s, s.seg_tail)
-    cdef TpIo* kept = &s.ios[s.seg_tail & s.seg_mask]
+    cdef Segment* seg = _raw(s, s.raw_tail)
+    cdef TpIo* kept = &s.ios[s.raw_tail & s.raw_mask]
     cdef int i
     if not io.dout_mask and not io.aout_mask:
         return
@@ -159,12 +167,12 @@ cdef void _merge_io(TpState* s, const TpIo* io) noexcept nogil:
 cdef int tp_take_io(Tp* tp, TpIo* io) noexcept nogil:
     """Outputs of the next segment that has started and has some; 0: none."""
     cdef TpState* s = _state(tp)
-    cdef int64_t now = current_segment(s) + (s.active < s.span_tail)
+    cdef int64_t now = current_raw(s) + (s.active < s.span_tail)
     while s.io_taken < now:
         s.io_taken += 1
-        if _seg(s, s.io_taken - 1).has_io:
-            _seg(s, s.io_taken - 1).has_io = 0
-            memcpy(io, &s.ios[(s.io_taken - 1) & s.seg_mask], sizeof(TpIo))
+        if _raw(s, s.io_taken - 1).has_io:
+            _raw(s, s.io_taken - 1).has_io = 0
+            memcpy(io, &s.ios[(s.io_taken - 1) & s.raw_mask], sizeof(TpIo))
             return 1
     return 0
 
@@ -223,7 +231,7 @@ cdef void tp_step_once(Tp* tp) noexcept nogil:
     cdef TpState* s = _state(tp)
     s.paused = 0
     s.stepping = 1
-    s.step_id = _seg(s, current_segment(s)).id if s.active < s.span_tail else 0
+    s.step_id = current_id(s)
 
 
 cdef void tp_abort(Tp* tp) noexcept nogil:
@@ -256,7 +264,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     memset(status, 0, sizeof(TpStatus))
     memcpy(status.pos, s.pos, sizeof(s.pos))
     memcpy(status.vel, s.vel, sizeof(s.vel))
-    status.depth = <int>(s.seg_tail - s.seg_head)
+    status.depth = <int>(s.raw_tail - current_raw(s))
     status.free = _free(s)
     status.paused = s.paused
     status.done = _idle(s)
@@ -264,7 +272,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     status.wants_unlock = -1
     if s.active >= s.span_tail:
         return
-    seg = _seg(s, current_segment(s))
+    seg = _raw(s, current_raw(s))
     for i in range(AXES):
         status.dtg[i] = seg.end[i] - s.pos[i]
     status.distance_to_go = norm(status.dtg, seg.unit)
