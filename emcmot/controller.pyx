@@ -21,7 +21,7 @@ from emcmot._messages cimport (
 from emcmot.eoffset cimport eoffset_cycle
 from emcmot.free_planner cimport free_planner_step
 from emcmot.homing cimport homing_cycle
-from emcmot.jog cimport jog_cycle
+from emcmot.jog cimport end_jogs, jog_cycle
 from emcmot.joint cimport command_joint, read_joints, write_joints
 from emcmot.modes cimport fall_to_free, resting, set_mode, stop_all
 from emcmot.probe cimport probe_cycle
@@ -120,13 +120,6 @@ cdef void watch_soft_limits(Motion* m) noexcept nogil:
                 b"positive" if joint.on_soft_pos else b"negative", n, joint.pos_cmd,
             )
         joint.soft_limit_reported = 1
-
-
-cdef void end_limit_override(Motion* m) noexcept nogil:
-    """OVERRIDE_LIMITS lasts until the next jog has come to its end."""
-    if m.overriding_jog and not m.jog_active and resting(m):
-        m.override_limits = 0
-        m.overriding_jog = 0
 
 
 cdef void set_overrides(Motion* m) noexcept nogil:
@@ -269,7 +262,7 @@ cdef void controller(Motion* m) noexcept nogil:
     move(m)
     write_queued_outputs(m)
     m.at_rest = resting(m)
-    end_limit_override(m)
+    end_jogs(m)
     write_joints(m)
     write_pins(m)
     fill_status(m)

@@ -13,3 +13,4 @@ cdef void stop_jogs(Motion* m) noexcept nogil
 cdef void stop_joint_jog(Joint* joint) noexcept nogil
 cdef void stop_axis_jog(Axis* axis) noexcept nogil
 cdef void jog_cycle(Motion* m) noexcept nogil
+cdef void end_jogs(Motion* m) noexcept nogil

@@ -102,6 +102,7 @@ cdef int jog_axis(Motion* m, int number, int kind, double vel, double offset) no
     axis.teleop.acc_limit = axis.acc_net
     axis.kb_jog = 1
     axis.wheel_jog = 0
+    m.overriding_jog = m.override_limits != 0
     return 0
 
 
@@ -182,7 +183,7 @@ cdef void axis_wheel(Motion* m, Axis* axis) noexcept nogil:
 
 
 cdef void jog_cycle(Motion* m) noexcept nogil:
-    """One period: wheels, stop pins, speeds under the feed override, and which jogs have ended."""
+    """Before the planners' step: stop pins, wheels, and speeds under the feed override."""
     cdef int n
     cdef int homing = 0
     cdef double scale = m.feed_scale if m.enables & Enables_FS else 1.0
@@ -192,21 +193,35 @@ cdef void jog_cycle(Motion* m) noexcept nogil:
         stop_jogs(m)
     for n in range(m.num_joints):
         homing |= m.joint[n].home.homing
-    m.jog_active = 0
     for n in range(m.num_joints):
         joint = &m.joint[n]
         joint_wheel(m, joint, homing)
         if not joint.home.homing and m.mode == MotionState_FREE:
-            if not joint.free.active:
-                joint.kb_jog = 0
-                joint.wheel_jog = 0
             joint.free.vel_limit = min(joint.jog_vel, joint.vel_limit * scale)
-        m.jog_active |= joint.kb_jog or joint.wheel_jog
     for n in range(MAX_AXES):
         axis = &m.axis[n]
         axis_wheel(m, axis)
+        axis.teleop.vel_limit = min(axis.jog_vel, axis.vel_net * scale)
+
+
+cdef void end_jogs(Motion* m) noexcept nogil:
+    """After the planners' step: which jogs have ended, and with them the override of limits."""
+    cdef int n
+    cdef Joint* joint
+    cdef Axis* axis
+    m.jog_active = 0
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        if not joint.free.active:
+            joint.kb_jog = 0
+            joint.wheel_jog = 0
+        m.jog_active |= joint.kb_jog or joint.wheel_jog
+    for n in range(MAX_AXES):
+        axis = &m.axis[n]
         if not axis.teleop.active:
             axis.kb_jog = 0
             axis.wheel_jog = 0
-        axis.teleop.vel_limit = min(axis.jog_vel, axis.vel_net * scale)
         m.jog_active |= axis.kb_jog or axis.wheel_jog
+    if m.overriding_jog and not m.jog_active and m.at_rest:
+        m.override_limits = 0
+        m.overriding_jog = 0
