@@ -17,6 +17,7 @@ class Buffer:
     name: str
     missed: int
     last: int
+    last_time_ns: int
     sleepers: int
     def __init__(
         self,
@@ -25,6 +26,7 @@ class Buffer:
         timeout: float = -1.0,
         lock_writes: bool = True,
         shared: bool = False,
+        observe: bool = False,
         c_num: int = -1,
         process: str = "",
     ) -> None: ...

@@ -15,107 +15,27 @@ next one gets it and finds everything as it was committed. A native thread that 
 C functions and no lock.
 """
 
+cimport cython
 from cpython.bytearray cimport PyByteArray_AS_STRING, PyByteArray_GET_SIZE
 from cpython.exc cimport PyErr_CheckSignals
 from libc.errno cimport EBUSY, ETIMEDOUT
+from libc.stddef cimport size_t
+from libc.stdint cimport int32_t, int64_t, uint32_t, uint64_t
 from libc.string cimport memcpy, memset, strerror, strncpy
-from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 from posix.unistd cimport getpid
+
+from nml._layout cimport *
 
 from nml.errors import BufferError_, ChannelTimeout, QueueFull, TooLong
 
-cdef extern from * nogil:
-    """
-    #include <errno.h>
-    #include <pthread.h>
-    #include <time.h>
-    #include <unistd.h>
-    #include <limits.h>
-    #include <sys/syscall.h>
-    #include <linux/futex.h>
-
-    #define nml_load(p) __atomic_load_n((p), __ATOMIC_ACQUIRE)
-    #define nml_store(p, v) __atomic_store_n((p), (v), __ATOMIC_RELEASE)
-    #define nml_fence() __atomic_thread_fence(__ATOMIC_SEQ_CST)
-
-    static void nml_store_max(uint64_t *p, uint64_t v) {
-        uint64_t old = __atomic_load_n(p, __ATOMIC_RELAXED);
-        while (old < v && !__atomic_compare_exchange_n(p, &old, v, 0, __ATOMIC_RELEASE, __ATOMIC_RELAXED)) {}
-    }
-    static void nml_wake(uint32_t *word, uint32_t *waiters) {
-        __atomic_add_fetch(word, 1, __ATOMIC_SEQ_CST);
-        if (__atomic_exchange_n(waiters, 0, __ATOMIC_SEQ_CST))
-            syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
-    }
-    static int nml_sleep(uint32_t *word, uint32_t *waiters, uint32_t expected, long ns) {
-        struct timespec t = {ns / 1000000000L, ns % 1000000000L};
-        __atomic_store_n(waiters, 1, __ATOMIC_SEQ_CST);
-        if (__atomic_load_n(word, __ATOMIC_SEQ_CST) != expected) return 0;
-        return syscall(SYS_futex, word, FUTEX_WAIT, expected, &t, NULL, 0);
-    }
-    static int nml_mutex_init(pthread_mutex_t *m) {
-        pthread_mutexattr_t a;
-        pthread_mutexattr_init(&a);
-        pthread_mutexattr_setpshared(&a, PTHREAD_PROCESS_SHARED);
-        pthread_mutexattr_setrobust(&a, PTHREAD_MUTEX_ROBUST);
-        int failed = pthread_mutex_init(m, &a);
-        pthread_mutexattr_destroy(&a);
-        return failed;
-    }
-    static int nml_lock_until(pthread_mutex_t *m, double seconds) {
-        if (seconds < 0) return pthread_mutex_lock(m);
-        struct timespec t;
-        clock_gettime(CLOCK_MONOTONIC, &t);
-        long ns = t.tv_nsec + (long)((seconds - (long)seconds) * 1e9);
-        t.tv_sec += (long)seconds + ns / 1000000000L;
-        t.tv_nsec = ns % 1000000000L;
-        return pthread_mutex_clocklock(m, CLOCK_MONOTONIC, &t);
-    }
-    """
-    uint64_t nml_load(uint64_t* p)
-    uint32_t nml_load32 "nml_load"(uint32_t* p)
-    void nml_store(uint64_t* p, uint64_t v)
-    void nml_fence()
-    void nml_store_max(uint64_t* p, uint64_t v)
-    void nml_wake(uint32_t* word, uint32_t* waiters)
-    int nml_sleep(uint32_t* word, uint32_t* waiters, uint32_t expected, long ns)
-    int nml_mutex_init(pthread_mutex_t* m)
-    int nml_lock_until(pthread_mutex_t* m, double seconds)
-    int pthread_mutex_trylock(pthread_mutex_t* m)
-    int pthread_mutex_unlock(pthread_mutex_t* m)
-    int pthread_mutex_consistent(pthread_mutex_t* m)
-    int EOWNERDEAD
-
-LAYOUT_VERSION = 0x4C4D4E_0001
+LAYOUT_VERSION = 0x4C4D4E_0002
 cdef uint64_t VERSION = LAYOUT_VERSION
 cdef enum:
-    ALIGNMENT = 64
-    RECORD_STEP = 32
     SERIAL_AT = 16
     SERIAL_END = 20
     LONGEST_SLEEP_NS = 100_000_000
 
 SLOT, QUEUE, BROADCAST = KIND_SLOT, KIND_QUEUE, KIND_BROADCAST
-
-
-cdef inline uint64_t aligned(uint64_t size) noexcept nogil:
-    return (size + ALIGNMENT - 1) & ~<uint64_t>(ALIGNMENT - 1)
-
-
-cdef inline char* data_of(Head* head) noexcept nogil:
-    return <char*>head + aligned(sizeof(Head)) + aligned(head.max_procs * sizeof(Diag))
-
-
-cdef inline int64_t now_ns() noexcept nogil:
-    cdef timespec t
-    clock_gettime(CLOCK_MONOTONIC, &t)
-    return <int64_t>t.tv_sec * 1_000_000_000 + t.tv_nsec
-
-
-# Single slot
-
-cdef inline Record* slot_of(Head* head, uint64_t number) noexcept nogil:
-    return <Record*>(data_of(head) + (number % SLOTS) * aligned(sizeof(Record) + head.capacity))
 
 
 cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil:
@@ -138,70 +58,37 @@ cdef uint64_t write_count(void* buffer) noexcept nogil:
     return nml_load(&(<Head*>buffer).write_counter)
 
 
-# Queues
-
-cdef inline uint64_t record_size(uint64_t length) noexcept nogil:
-    return (sizeof(Record) + length + RECORD_STEP - 1) & ~<uint64_t>(RECORD_STEP - 1)
-
-
-cdef inline Record* record_at(Head* head, uint64_t at) noexcept nogil:
-    """The record that starts at a position of the endless tape that the ring shows; never split, see RECORD_STEP."""
-    return <Record*>(data_of(head) + at % head.capacity)
-
-
-cdef void ring_put(Head* head, uint64_t at, const char* src, uint64_t size) noexcept nogil:
-    cdef uint64_t start = at % head.capacity
-    cdef uint64_t first = min(size, head.capacity - start)
-    memcpy(data_of(head) + start, src, first)
-    if first < size:
-        memcpy(data_of(head), src + first, size - first)
-
-
-cdef void ring_get(Head* head, uint64_t at, char* dst, uint64_t size) noexcept nogil:
-    cdef uint64_t start = at % head.capacity
-    cdef uint64_t first = min(size, head.capacity - start)
-    memcpy(dst, data_of(head) + start, first)
-    if first < size:
-        memcpy(dst + first, data_of(head), size - first)
-
-
-cdef uint64_t paired(uint64_t* counter, uint64_t* position, uint64_t* at) noexcept nogil:
-    """A committed counter and, in ``at``, the position that belongs to it."""
-    cdef uint64_t number = nml_load(counter)
-    while True:
-        at[0] = nml_load(&position[number & 1])
-        again = nml_load(counter)
-        if again == number:
-            return number
-        number = again
-
-
 cdef void ring_commit(Head* head, uint64_t number, uint64_t tail) noexcept nogil:
     nml_store(&head.tail[number & 1], tail)
     nml_store(&head.write_counter, number)  # SYNC POINT: the record exists
     nml_wake(&head.signal, &head.waiters)
 
 
-cdef void ring_write(Head* head, uint64_t tail, const char* src, uint64_t size) noexcept nogil:
+cdef void ring_write(Head* head, uint64_t tail, const char* src, uint64_t size, int64_t writer) noexcept nogil:
     cdef Record* record = record_at(head, tail)
     cdef uint64_t number = head.write_counter + 1
+    nml_store(&head.reserved, tail + record_size(size))
+    nml_fence()  # SYNC POINT: an observer that copies overwritten bytes sees what was reserved
     record.id = number
     record.length = size
     record.time_ns = now_ns()
-    record.writer = getpid()
+    record.writer = writer
     ring_put(head, tail + sizeof(Record), src, size)
     ring_commit(head, number, tail + record_size(size))
 
 
 cdef int queue_push(void* buffer, const void* src, size_t size) noexcept nogil:
-    """Append a message; 0, or -1 if there is no room. For the only writer of the buffer (or the holder of the lock)."""
-    cdef Head* head = <Head*>buffer
+    """Append a message; 0, or -1 if there is no room. For the only writer of the buffer."""
+    return queue_append(<Head*>buffer, src, size, 0)
+
+
+cdef int queue_append(Head* head, const void* src, size_t size, int64_t writer) noexcept nogil:
     cdef uint64_t start, tail
     paired(&head.read_counter, head.head, &start)
     paired(&head.write_counter, head.tail, &tail)
     if record_size(size) > head.capacity - (tail - start):
         return -1
-    ring_write(head, tail, <const char*>src, size)
+    ring_write(head, tail, <const char*>src, size, writer)
     return 0
 
 
@@ -290,8 +177,12 @@ def check_segment(memory, str name, int kind, uint64_t size, uint32_t max_procs)
         )
 
 
+@cython.no_gc_clear  # the memory must outlive `let_go`
 cdef class Buffer:
-    """A process's hold on one buffer; for one thread at a time, except ``wait``."""
+    """A process's hold on one buffer; for one thread at a time, except ``wait``.
+
+    An observer sees every message, takes none from anybody and marks none as read.
+    """
 
     def __cinit__(
         self,
@@ -300,6 +191,7 @@ cdef class Buffer:
         double timeout=-1.0,
         bint lock_writes=True,
         bint shared=False,
+        bint observe=False,
         int c_num=-1,
         str process="",
     ):
@@ -311,14 +203,18 @@ cdef class Buffer:
         self.timeout = timeout
         self.lock_writes = lock_writes
         self.shared = shared
+        self.observe = observe
+        self.pid = getpid()
         if c_num >= 0:
             self.diag = <Diag*>(<char*>self.head + aligned(sizeof(Head))) + c_num
             memset(self.diag, 0, sizeof(Diag))
             encoded = process.encode()
             strncpy(self.diag.name, encoded, sizeof(self.diag.name) - 1)
-            self.diag.pid = getpid()
+            self.diag.pid = self.pid
         if self.head.kind == KIND_BROADCAST:
             self.join()
+        elif self.head.kind == KIND_QUEUE:
+            self.cursor_id = paired(&self.head.read_counter, self.head.head, &self.cursor_at)
 
     @property
     def address(self) -> int:
@@ -361,8 +257,19 @@ cdef class Buffer:
         return 0
 
     def hold_lock(self) -> None:
-        """Take the writers' lock and keep it; for tests of what follows from that."""
+        """Take the writers' lock and keep it until ``close``: nobody else writes meanwhile."""
         self.lock(&self.head.write_lock)
+        self.holding = True
+
+    cdef void let_go(self) noexcept:
+        """Drop the memory; a lock that were still held would stay in this thread's list of robust locks."""
+        if self.holding:
+            self.holding = False
+            pthread_mutex_unlock(&self.head.write_lock)
+        self.memory = None
+
+    def __dealloc__(self):
+        self.let_go()
 
     cdef void account(self, bint wrote, size_t size, int32_t type_id, bint new) noexcept:
         cdef Diag* diag = self.diag
@@ -408,14 +315,14 @@ cdef class Buffer:
         if serial and size >= SERIAL_END:
             (<int32_t*>(src + SERIAL_AT))[0] = <int32_t>number
         if head.kind == KIND_SLOT:
-            slot_of(head, number).writer = getpid()
+            slot_of(head, number).writer = self.pid
             slot_write(head, src, size)
         elif head.kind == KIND_QUEUE:
-            failed = queue_push(head, src, size)
+            failed = queue_append(head, src, size, self.pid)
         else:
             paired(&head.write_counter, head.tail, &tail)
             drop_until_room(head, tail, record_size(size))
-            ring_write(head, tail, src, size)
+            ring_write(head, tail, src, size, self.pid)
         if self.lock_writes:
             pthread_mutex_unlock(&head.write_lock)
         if failed:
@@ -436,10 +343,10 @@ cdef class Buffer:
         self.check_open()
         if self.head.kind == KIND_SLOT:
             message = self.take_slot(None)
-            if message is not None and consume:
+            if message is not None and consume and not self.observe:
                 nml_store_max(&self.head.seen, self.last)
         elif self.head.kind == KIND_QUEUE:
-            message = self.take_queue(consume)
+            message = self.take_observed() if self.observe else self.take_queue(consume)
         else:
             message = self.take_broadcast(consume)
         if self.diag is not NULL:
@@ -472,6 +379,7 @@ cdef class Buffer:
             if <uint64_t>PyByteArray_GET_SIZE(message) < length:
                 raise BufferError_(f"buffer {self.name}: the message has {length} bytes, the reader {len(message)}")
             memcpy(PyByteArray_AS_STRING(message), slot + 1, length)
+            self.last_time_ns = slot.time_ns
             nml_fence()  # SYNC POINT: nothing was overwritten if the id is still the same
             if nml_load(&slot.id) == number:
                 self.last = number
@@ -488,6 +396,7 @@ cdef class Buffer:
             pthread_mutex_unlock(&head.read_lock)
             return None
         length = record_at(head, at).length
+        self.last_time_ns = record_at(head, at).time_ns
         message = bytearray(length)
         ring_get(head, at + sizeof(Record), PyByteArray_AS_STRING(message), length)
         if consume:
@@ -495,6 +404,29 @@ cdef class Buffer:
         pthread_mutex_unlock(&head.read_lock)
         self.last = number + 1
         return message
+
+    cdef object take_observed(self):
+        """The queue's next message after this observer's cursor, whether or not somebody has taken it meanwhile."""
+        cdef Head* head = self.head
+        cdef Record* record
+        cdef uint64_t number, length
+        while nml_load(&head.write_counter) > self.cursor_id:
+            record = record_at(head, self.cursor_at)
+            length = record.length
+            if record.id == self.cursor_id + 1 and length <= head.capacity:
+                message = bytearray(length)
+                ring_get(head, self.cursor_at + sizeof(Record), PyByteArray_AS_STRING(message), length)
+                self.last_time_ns = record.time_ns
+                nml_fence()  # SYNC POINT: the record was whole if nothing was reserved that overlaps it
+                if nml_load(&head.reserved) <= self.cursor_at + head.capacity:
+                    self.cursor_id += 1
+                    self.cursor_at += record_size(length)
+                    self.last = self.cursor_id
+                    return message
+            number = paired(&head.read_counter, head.head, &self.cursor_at)
+            self.missed += number - self.cursor_id
+            self.cursor_id = number
+        return None
 
     def join(self) -> None:
         """Broadcast: put the cursor before the first message that no reader has taken yet."""
@@ -548,13 +480,15 @@ cdef class Buffer:
                 continue
             message = bytearray(length)
             ring_get(head, self.cursor_at + sizeof(Record), PyByteArray_AS_STRING(message), length)
+            self.last_time_ns = record_at(head, self.cursor_at).time_ns
             nml_fence()  # SYNC POINT: the record was whole if it is not dropped yet
             if nml_load(&head.read_counter) > self.cursor_id:
                 continue
             if consume:
                 self.cursor_id += 1
                 self.cursor_at += record_size(length)
-                nml_store_max(&head.seen, self.cursor_id)
+                if not self.observe:
+                    nml_store_max(&head.seen, self.cursor_id)
             self.last = self.cursor_id
             return message
         return None
@@ -564,7 +498,7 @@ cdef class Buffer:
         cdef uint64_t number = nml_load(&self.head.write_counter)
         if self.head.kind == KIND_SLOT:
             return number != self.last and number > nml_load(&self.head.cleared)
-        if self.head.kind == KIND_QUEUE:
+        if self.head.kind == KIND_QUEUE and not self.observe:
             return number != nml_load(&self.head.read_counter)
         if self.shared and self.head.shared_id:
             return number > self.head.shared_id
@@ -604,7 +538,7 @@ cdef class Buffer:
         finally:
             self.sleepers -= 1
             if self.closed and not self.sleepers:
-                self.memory = None
+                self.let_go()
 
     def queue_length(self) -> int:
         """Messages that wait for this reader; 0 for a single slot."""
@@ -671,7 +605,7 @@ cdef class Buffer:
             if self.sleepers:
                 nml_wake(&self.head.signal, &self.head.waiters)
             else:
-                self.memory = None
+                self.let_go()
 
 
 cdef int32_t type_of(bytearray message) noexcept:

@@ -72,6 +72,7 @@ def attach(memory: Memory | Segment | None, line: BufferLine, process: ProcessLi
         timeout=process.timeout,
         lock_writes=line.mutex is not Mutex.NONE,
         shared=process.shared,
+        observe=process.observer,
         c_num=process.c_num if line.diag else -1,
         process=process.process,
     )

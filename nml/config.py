@@ -96,7 +96,7 @@ class BufferLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessLine:
-    """A P line."""
+    """A P line. ``observer``, which no file can say: sees every message and takes none (``NmlConfig.observer``)."""
 
     process: str
     buffer: str
@@ -108,6 +108,7 @@ class ProcessLine:
     master: bool = False
     c_num: int
     shared: bool = False
+    observer: bool = False
     poll: bool = False
     subscription: str = "none"
     reconnect: bool = True
@@ -307,6 +308,21 @@ class NmlConfig:
         names = ", ".join(line.buffer for line in own) or "none"
         message = f"no P line of process {process!r} for buffer {buffer!r}; it has {names}"
         raise ConfigError(message, Place(str(self.path)))
+
+    def observer(self, buffer: str, process: str = "observer") -> ProcessLine:
+        """A line for a tool that looks on: it reads every message of a buffer and takes none from anybody."""
+        users = [line for line in self.process_lines if line.buffer in (buffer, ANY_BUFFER)]
+        remote = bool(users) and all(line.type is ProcessType.REMOTE for line in users)
+        return ProcessLine(
+            process=process,
+            buffer=buffer,
+            type=ProcessType.REMOTE if remote else ProcessType.LOCAL,
+            ops="R",
+            timeout=1.0,
+            observer=True,
+            c_num=0,
+            place=Place(str(self.path)),
+        )
 
     def _take(self, text: str, number: int) -> None:
         words = [(match[0], Place(str(self.path), number, match.start() + 1)) for match in _WORD.finditer(text)]

@@ -13,6 +13,7 @@ class PhantomBuffer:
 
     missed = 0
     last = 0
+    last_time_ns = 0
     address = 0
 
     def __init__(self, name: str, size: int) -> None:

@@ -7,7 +7,6 @@ import mmap
 import os
 import random
 import signal
-import struct
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -44,13 +43,13 @@ class Notes:
     """Numbers that a process leaves for others and that its death does not take away."""
 
     def __init__(self) -> None:
-        self.memory = mmap.mmap(-1, 4096)
+        self.numbers = memoryview(mmap.mmap(-1, 4096)).cast("q")
 
     def __setitem__(self, index: int, value: int) -> None:
-        struct.pack_into("<q", self.memory, 8 * index, value)
+        self.numbers[index] = value  # one store, which no kill can split
 
     def __getitem__(self, index: int) -> int:
-        return struct.unpack_from("<q", self.memory, 8 * index)[0]
+        return self.numbers[index]
 
 
 def start(work: Callable[[], None]) -> int:

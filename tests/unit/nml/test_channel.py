@@ -150,6 +150,37 @@ def test_readers_that_share_a_cursor_behave_as_on_a_plain_queue(config: NmlConfi
     assert texts(own) == ["0", "1", "2"]
 
 
+@pytest.mark.parametrize("name", ["slot", "queue", "news"])
+def test_an_observer_sees_every_message_and_takes_none(config: NmlConfig, name: str):
+    writer, reader = Channel(config, name, "a"), Channel(config, name, "b")
+    observer = Channel.connect(config.buffer(name), config.observer(name))
+    for number in range(3):
+        writer.write(text(number))
+        assert observer.wait(0.0)
+        assert observer.read().text == str(number)
+        assert observer.raw.last == number + 1
+        assert not writer.check_if_read()
+        assert reader.read().text == str(number)
+    assert observer.read() is None
+    with pytest.raises(BufferError_, match="observer may not write"):
+        observer.write(text(4))
+
+
+def test_an_observer_still_sees_what_others_have_taken_until_it_is_overwritten(config: NmlConfig):
+    writer, reader = Channel(config, "queue", "a"), Channel(config, "queue", "b")
+    observer = Channel.connect(config.buffer("queue"), config.observer("queue"))
+    for number in range(3):
+        writer.write(text(number))
+        reader.read()
+    assert texts(observer) == ["0", "1", "2"]
+    for number in range(3, 9):
+        writer.write(text(number))
+        if number < 7:
+            reader.read()
+    assert texts(observer) == ["7", "8"]
+    assert observer.missed == 4
+
+
 def test_clear_forgets_messages_but_not_numbers(config: NmlConfig):
     for name in ("slot", "queue"):
         writer, reader = Channel(config, name, "a"), Channel(config, name, "b")
