@@ -14,15 +14,19 @@ RCS_DONE, RCS_ERROR = 1, 3
 
 
 class FakeTask:
-    """Answers every command with RCS_DONE, or with what ``answer(command, status)`` returns."""
+    """Answers every command with RCS_DONE, or with what ``answer(command, status)`` returns.
 
-    def __init__(self, answer: Callable[[Command, EMC_STAT], int] | None = None) -> None:
+    ``cycle``: the status is also written every so many seconds, as task does it.
+    """
+
+    def __init__(self, answer: Callable[[Command, EMC_STAT], int] | None = None, cycle: float | None = None) -> None:
         self.status = EMC_STAT(status=RCS_DONE)
         self.taken: list[Command] = []
         self._answer = answer or (lambda command, status: RCS_DONE)
         self._commands = Channel(None, "emcCommand", "emc")
         self._statuses = Channel(None, "emcStatus", "emc")
         self.errors = Channel(None, "emcError", "emc")
+        self._cycle = cycle
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run)
         self.publish()
@@ -33,7 +37,9 @@ class FakeTask:
 
     def _run(self) -> None:
         while not self._over.is_set():
-            if not self._commands.wait(0.05):
+            if self._cycle is not None:
+                self.publish()
+            if not self._commands.wait(self._cycle or 0.05):
                 continue
             while (command := self._commands.read()) is not None:
                 assert isinstance(command, Command)

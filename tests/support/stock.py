@@ -1,0 +1,71 @@
+"""Debian's LinuxCNC as a peer: its Python module in a process of its own, as a client of our server."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.nml_server import Server, remote_text
+
+PYTHON = Path("/usr/bin/python3")
+MODULE_FOUND = any(Path("/usr/lib/python3/dist-packages").glob("linuxcnc*.so"))
+TOOL_MAP_BYTES = 16 + 1001 * 112
+
+needs_module = pytest.mark.skipif(not MODULE_FOUND, reason="Debian's linuxcnc module is not installed")
+
+_PRELUDE = """
+import json, sys, time
+import linuxcnc
+linuxcnc.nmlfile = sys.argv[1]
+out = []
+"""
+
+
+class StockClient:
+    """Runs scripts for the stock module; a script puts what it finds into the list ``out``."""
+
+    def __init__(self, server: Server) -> None:
+        self.home = server.folder / "home"
+        self.home.mkdir(exist_ok=True)
+        (self.home / ".tool.mmap").write_bytes(bytes(TOOL_MAP_BYTES))
+        self.file = server.folder / "stock.nml"
+        self.file.write_text(stock_text(remote_text(server.file.read_text())))
+
+    def environment(self) -> dict[str, str]:
+        """For programs that must not meet the project's own modules."""
+        return {"HOME": str(self.home), "PATH": os.environ["PATH"], "LANG": "C.UTF-8"}
+
+    def start(self, script: str) -> subprocess.Popen[str]:
+        """The script as a process; it prints ``out`` as its last line."""
+        text = _PRELUDE + script + "\nprint(json.dumps(out))\n"
+        return subprocess.Popen(
+            [str(PYTHON), "-c", text, str(self.file)],
+            cwd=self.home,
+            env=self.environment(),
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def run(self, script: str, seconds: float = 60.0) -> list[Any]:
+        """What the script put into ``out``."""
+        process = self.start(script)
+        text, _ = process.communicate(timeout=seconds)
+        assert process.returncode == 0, f"the stock client ended with {process.returncode}"
+        return json.loads(text.splitlines()[-1])
+
+
+def stock_text(text: str) -> str:
+    """An NML file without what only ours understands: buffers of our own and their options."""
+    kept = []
+    for line in text.splitlines():
+        words = line.split()
+        name = {"B": 1, "P": 2}.get(words[0] if words else "", 0)
+        if name and words[name] not in ("emcCommand", "emcStatus", "emcError", "toolCmd", "toolSts", "default"):
+            continue
+        kept.append(line.replace(" broadcast", ""))
+    return "\n".join(kept) + "\n"
