@@ -57,8 +57,8 @@ import tomllib
 
 with open(sys.argv[1], "rb") as file:
     project = tomllib.load(file)
-print(*project["build-system"]["requires"], *project["project"]["dependencies"], sep="\n")
-print(*project["project"]["optional-dependencies"].get(sys.argv[2], []), sep="\n")
+extra = project["project"]["optional-dependencies"].get(sys.argv[2], [])
+print(*project["build-system"]["requires"], *project["project"]["dependencies"], *extra, sep="\n")
 PYTHON
     )
     "$VENV/bin/pip" install --quiet --disable-pip-version-check "${requirements[@]}" ||
