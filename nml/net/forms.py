@@ -9,11 +9,10 @@ from __future__ import annotations
 import functools
 import zlib
 from enum import Enum
-from importlib import import_module
 from typing import Protocol
 
 import nml.emc.emcmot
-from nml.codecs import Codec
+from nml.codecs import Codec, codec
 from nml.config import BufferLine, Encoding
 from nml.errors import DecodeError
 from nml.message import Message, decode, registry
@@ -81,4 +80,4 @@ def form(kind: Kind, line: BufferLine) -> Form:
     encoding = Encoding.XDR if line.encoding is Encoding.ASCII else line.encoding
     if kind is Kind.TEXT:
         encoding = Encoding.DISP
-    return Encoded(import_module(f"nml.codecs.{encoding.value}"), line.name not in BARE_BUFFERS)
+    return Encoded(codec(encoding.value), line.name not in BARE_BUFFERS)

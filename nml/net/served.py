@@ -12,9 +12,10 @@ from pathlib import Path
 
 from nml import _shm
 from nml.channel import Channel
+from nml.codecs import Codec, codec
 from nml.config import ANY_BUFFER, BufferLine, NmlConfig, ProcessLine, ProcessType
-from nml.errors import ChannelTimeout, ConfigError, DecodeError, EncodeError, NmlError, QueueFull
-from nml.message import Command
+from nml.errors import ChannelTimeout, ConfigError, DecodeError, EncodeError, NmlError, QueueFull, TooLong
+from nml.message import Command, Message
 from nml.net import diagnostics
 from nml.net.forms import Form, Kind, form, vocabulary_checksum
 from nml.net.passwords import PasswordFile
@@ -35,6 +36,7 @@ class ServedBuffer:
         self.users = users
         self.channel = Channel.connect(line, process)
         self.raw = self.channel.raw
+        self._stored: Codec | None = codec(line.encoding.value) if line.neutral else None
         self._forms: dict[Kind, Form] = {}
         self.usages: list[diagnostics.Usage] = []
         self.number = 0
@@ -49,13 +51,28 @@ class ServedBuffer:
         number = self.raw.write_counter
         image = self.raw.peek()
         if image is not None:
+            self._image = self.image(image, self.raw.last)
             self.number = self.raw.last
             self.id = self.number & MASK
-            self._image = image
         else:
             self.number = number
             self.id = 0
         self._bodies = {}
+
+    def image(self, data: bytearray, number: int) -> bytearray:
+        """The native image of what lies in the buffer as message ``number``."""
+        if self._stored is None:
+            return data
+        message = self._stored.decode(data)
+        if self.line.serial and isinstance(message, Command):
+            message.serial_number = number
+        return bytearray(message.data)
+
+    def write(self, raw: _shm.Buffer, message: Message, only_if_read: bool) -> int:
+        """Put a message into the buffer: its number, 0 if the last one was not read."""
+        if self._stored is not None:
+            return raw.write(self._stored.encode(message), False, only_if_read)
+        return raw.write(message.data, self.line.serial and isinstance(message, Command), only_if_read)
 
     def form(self, kind: Kind) -> Form:
         """How messages travel to clients of one kind."""
@@ -196,7 +213,8 @@ class QueueView(SlotView):
         message_id = self._raw.last & MASK
         if message_id in (last, 0):
             message_id ^= SAME_ID
-        return CmsStatus.READ_OK, message_id, consume, self._form.encode(image)
+        body = self._form.encode(self._served.image(image, self._raw.last))
+        return CmsStatus.READ_OK, message_id, consume, body
 
 
 class BroadcastView(QueueView):
@@ -221,6 +239,7 @@ _QUESTIONS: Mapping[int, Callable[[_shm.Buffer], int]] = {
 }
 _STATUS: tuple[tuple[type[NmlError], CmsStatus], ...] = (
     (QueueFull, CmsStatus.QUEUE_FULL),
+    (TooLong, CmsStatus.INSUFFICIENT_SPACE_ERROR),
     (ChannelTimeout, CmsStatus.TIMED_OUT),
     (DecodeError, CmsStatus.UPDATE_ERROR),
     (EncodeError, CmsStatus.UPDATE_ERROR),

@@ -1,7 +1,7 @@
 """Debian's own Python module, unchanged, as a remote client of our server: status, commands, operator messages.
 
-A stand-in for task answers commands, so that every field of every command can be looked at; the whole machine under stock
-clients is tested in ``test_stock_machine.py``.
+A stand-in for task answers commands, so that every field of every command can be looked at; the whole machine under
+stock clients is tested in ``test_stock_clients_machine.py``.
 """
 
 from __future__ import annotations
