@@ -271,6 +271,8 @@ cdef int run(State s, Block* b) except -1:
             steps >>= 1
             step += 1
         if step == STEP_MOTION:
+            if g_code[b.motion].run != canned_cycle:
+                s.in_cycles = False
             g_code[b.motion].run(s, b, b.motion)
         elif step_g[step] >= 0:
             code = b.g[step_g[step]]

@@ -8,7 +8,8 @@ from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import (
-    CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_EXACT_PATH, CANON_SIDE_OFF, CANON_STOPPED, CANON_UNITS_INCHES,
+    CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_EXACT_PATH, CANON_PLANE_XZ, CANON_PLANE_YZ, CANON_SIDE_OFF, CANON_STOPPED,
+    CANON_UNITS_INCHES,
 )
 from rs274ngc.modes cimport read_spindle, send_control
 from rs274ngc.path cimport axis_words, feed, plane_axes, traverse
@@ -17,6 +18,7 @@ from rs274ngc.state cimport State, fail, fail_word
 cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES, EXACT_PATH = CANON_EXACT_PATH
 cdef int STOPPED = CANON_STOPPED, CLOCKWISE = CANON_CLOCKWISE, COUNTERCLOCKWISE = CANON_COUNTERCLOCKWISE
 cdef double PECK_CLEARANCE_INCH = 0.010     # how far above the last depth a peck begins, and a chip break retracts
+cdef int XZ = CANON_PLANE_XZ, YZ = CANON_PLANE_YZ
 cdef str AXES = "XYZABCUVW"
 
 cdef int REPEATS_MAX = 1000000
@@ -47,6 +49,20 @@ cdef int at_place(State s, Hole* h) except -1:
     end[h.first] = h.x
     end[h.second] = h.y
     return traverse(s, end)
+
+
+cdef int tap_to(State s, double height, Hole* h) except -1:
+    """The feed of a tapping cycle. In the XZ and YZ planes its axes are exchanged, as LinuxCNC's are."""
+    cdef double x, y, z
+    if s.plane == XZ:
+        x, y, z = height, s.pos[h.first], s.pos[h.second]
+    elif s.plane == YZ:
+        x, y, z = s.pos[h.second], height, s.pos[h.first]
+    else:
+        return at_height(s, height, h.third, False)
+    s.canon.straight_feed(s.line, x, y, z, s.pos[3], s.pos[4], s.pos[5], s.pos[6], s.pos[7], s.pos[8])
+    s.pos[h.third] = height
+    return 0
 
 
 # --- One hole
@@ -88,14 +104,14 @@ cdef int tap(State s, Block* b, Hole* h) except -1:
         return fail(s, "Spindle turning clockwise in G74", b.g_at[1])
     s.canon.disable_feed_override()
     s.canon.disable_speed_override(n)
-    at_height(s, h.bottom, h.third, False)
+    tap_to(s, h.bottom, h)
     s.canon.stop_spindle_turning(n)
     if h.code == 840:
         s.canon.start_spindle_counterclockwise(n, True)
     else:
         s.canon.start_spindle_clockwise(n, True)
     s.canon.dwell(s.cycle_p)
-    at_height(s, h.clear, h.third, False)
+    tap_to(s, h.clear, h)
     s.canon.stop_spindle_turning(n)
     if h.code == 840:
         s.canon.start_spindle_clockwise(n, True)
@@ -150,7 +166,7 @@ cdef int back_bore(State s, Block* b, Hole* h) except -1:
     h.x, h.y = x, y
     at_place(s, h)
     s.canon.stop_spindle_turning(n)
-    s.canon.orient_spindle(n, 0.0, 0)
+    s.canon.orient_spindle(n, 0.0, turning)
     at_height(s, h.bottom, h.third, True)
     h.x, h.y = hole_x, hole_y
     at_place(s, h)
@@ -158,7 +174,7 @@ cdef int back_bore(State s, Block* b, Hole* h) except -1:
     at_height(s, middle, h.third, False)
     at_height(s, h.bottom, h.third, False)
     s.canon.stop_spindle_turning(n)
-    s.canon.orient_spindle(n, 0.0, 0)
+    s.canon.orient_spindle(n, 0.0, turning)
     h.x, h.y = x, y
     at_place(s, h)
     at_height(s, h.clear, h.third, True)
@@ -246,7 +262,10 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
     z = value_or(b, axis_words[h.third], s.cycle_z)
     r = value_or(b, W_R, s.cycle_r)
     s.cycle_z, s.cycle_r = z, r
-    height = s.pos[h.third]
+    if not s.in_cycles:
+        s.cycle_level = s.pos[h.third]
+        s.in_cycles = True
+    height = s.cycle_level
     if s.incremental:
         step_x = in_radius(s, b, h.first, 0.0)
         step_y = in_radius(s, b, h.second, 0.0)

@@ -103,6 +103,8 @@ cdef class Flow:
                 continue
             strip(s)
             at = skip_number(s)
+            if s.text[at + 1] != c'<' and not c'0' <= s.text[at + 1] <= c'9' and keywords[0] in ("sub", "endsub", ""):
+                continue        # no definition has a computed label, and its parameters may not be there yet
             found, keyword = self.read_head(&at)
             if keyword == "sub" and "endsub" in keywords and found != label:
                 fail(s, "Nested subroutine definition", at)
@@ -213,7 +215,7 @@ cdef class Flow:
             self.must_skip_to(label, ("endwhile",))
 
     def do_endwhile(self, str label, int at):
-        known = self.known(label, ("while",), "while/do", at)
+        cdef Label known = self.known(label, ("while",), "while/do", at)
         self.jump(known.position, known.line)
 
     def do_do(self, str label, int at):

@@ -85,9 +85,8 @@ cdef int set_retract(State s, Block* b, int code) except -1:
     cdef bint old_z = code == 980
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot change retract mode with cutter radius compensation on", b.g_at[10])
-    if old_z != s.retract_old_z:
-        s.retract_old_z = old_z
-        s.canon.comment(f"interpreter: retract mode set to {'old_z' if old_z else 'r_plane'}")
+    s.retract_old_z = old_z
+    s.canon.comment(f"interpreter: retract mode set to {'old_z' if old_z else 'r_plane'}")
     return 0
 
 

@@ -315,7 +315,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
             return fail_word(s, "Invalid tool orientation", W_Q)
         orientation = <int>value_or(b, W_Q, 0.0)
     write_tool(s, index, number, offset, diameter, front, back, orientation)
-    if s.current_tool == number and index != 0:
+    if index == s.tool_index and index != 0:
         write_tool(s, 0, number, offset, diameter, front, back, orientation)
     return refresh_tool_parameters(s)
 

@@ -56,9 +56,9 @@ ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
         for i, axis in enumerate("xyzabcuvw")
     ),
     ("_current_tool", "number of the tool in the spindle", lambda s: s.current_tool),
-    ("_current_pocket", "tool-table index of the tool in the spindle", lambda s: s.tool_index),
+    ("_current_pocket", "pocket of the tool in the spindle", lambda s: s.pocket_of(s.tool_index)),
     ("_selected_tool", "number of the selected tool, -1: none", lambda s: s.selected_tool),
-    ("_selected_pocket", "tool-table index of the selected tool, -1: none", lambda s: s.selected_index),
+    ("_selected_pocket", "pocket of the selected tool, -1: none", lambda s: s.pocket_of(s.selected_index)),
     ("_call_level", "depth of subroutine calls", lambda s: len(s.frames) - 1),
     ("_remap_level", "depth of remapped codes", lambda s: 0),
     ("_value", "value that the last subroutine returned", lambda s: s.return_value),

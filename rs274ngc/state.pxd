@@ -80,7 +80,8 @@ cdef class State:
     cdef bint speed_override[SPINDLES]
     # Sticky numbers of the canned cycles
     cdef double cycle_z, cycle_r, cycle_q, cycle_p, cycle_i, cycle_j, cycle_k
-    cdef int cycle_motion
+    cdef double cycle_level         # height before the first of the cycles that follow one another
+    cdef bint in_cycles
     # Tools
     cdef public int selected_index, selected_tool, tool_index
     cdef public int current_tool

@@ -86,6 +86,12 @@ cdef class State:
         """Rotary axis 0 A, 1 B or 2 C is an indexer that ``joint`` locks."""
         self.indexer[rotary] = joint
 
+    def pocket_of(self, int index):
+        """Pocket number of a tool-table index; negative indices stand for themselves."""
+        if index <= 0 or index >= self.canon.get_external_pockets_max():
+            return index
+        return self.canon.get_external_tool_table(index).pocketno
+
     def spindle_speed(self, int spindle):
         """Programmed speed of a spindle."""
         return self.speed[spindle]
