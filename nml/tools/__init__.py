@@ -1,0 +1,1 @@
+"""Command-line tools for NML buffers: nmlcheck, nmlstat, nmlsend, nmllog."""
