@@ -340,6 +340,11 @@ cdef class Scheduler:
         self.state = NULL
 
 
+def call(size_t code, size_t arg, long period_ns) -> None:
+    """Call a function once, here: a period without a thread, for tests and studies."""
+    (<hal_function>code)(<void*>arg, period_ns)
+
+
 def lock_memory() -> bool:
     """Keep all memory of this process in RAM; False where the system refuses."""
     return mlockall(MCL_CURRENT | MCL_FUTURE) == 0

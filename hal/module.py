@@ -23,6 +23,7 @@ from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, L
 from hal.values import TYPE_NAMES
 from nml import clock
 from nml.errors import HalError
+from nml.namespace import namespace
 
 HAL_BIT, HAL_FLOAT, HAL_S32, HAL_U32, HAL_PORT, HAL_S64, HAL_U64 = BIT, FLOAT, S32, U32, PORT, S64, U64
 HAL_IN, HAL_OUT, HAL_IO = _shm.IN, _shm.OUT, _shm.IO
@@ -33,25 +34,18 @@ MSG_NONE, MSG_ERR, MSG_WARN, MSG_INFO, MSG_DBG, MSG_ALL = range(6)
 is_kernelspace, is_userspace, is_rt, is_sim = 0, 1, 1, 1
 
 error = HalError
-_door: list[Hal] = []
 _msg_level = MSG_ERR
+_doors: dict[tuple[int, str], Hal] = {}
 
 
 def door() -> Hal:
-    """This process's attachment to the HAL, made at first use and again after a fork."""
-    if _door and _door[0].segment.attached and _pid == os.getpid():
-        return _door[0]
-    _attach()
-    return _door[0]
-
-
-_pid = 0
-
-
-def _attach() -> None:
-    global _pid
-    _pid = os.getpid()
-    _door[:] = [Hal()]
+    """This process's attachment to the HAL of its namespace, made at first use and again after a fork."""
+    key = os.getpid(), namespace()
+    hal = _doors.get(key)
+    if hal is None or not hal.segment.attached:
+        _doors.clear()
+        hal = _doors[key] = Hal()
+    return hal
 
 
 class Pin:

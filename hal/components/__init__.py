@@ -11,7 +11,7 @@ from importlib import import_module
 
 from hal.components.declare import DECLARED
 
-GROUPS = ("logic", "arithmetic", "filters", "timing", "select", "convert", "simulate")
+GROUPS = ("logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "stepgen")
 MODULES = {
     "threads": ("threads", "load"),
     "sampler": ("fifo", "load_sampler"),

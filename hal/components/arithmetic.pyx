@@ -259,22 +259,22 @@ declare("blend", "Linear mix of two inputs", sizeof(Blend), [
 
 cdef struct Lincurve:
     hal_pin in_, out, out_io
-    hal_pin x[16]
-    hal_pin y[16]
+    hal_pin x_val[16]
+    hal_pin y_val[16]
 
 cdef double curve(Lincurve* s, double value) noexcept nogil:
     cdef int i
     cdef double x0, x1, y0, y1
-    if value <= at(s.x[0]).f:
-        return at(s.y[0]).f
+    if value <= at(s.x_val[0]).f:
+        return at(s.y_val[0]).f
     for i in range(1, 16):
-        if s.x[i] == NULL:
-            return at(s.y[i - 1]).f
-        x1 = at(s.x[i]).f
+        if s.x_val[i] == NULL:
+            return at(s.y_val[i - 1]).f
+        x1 = at(s.x_val[i]).f
         if value < x1:
-            x0, y0, y1 = at(s.x[i - 1]).f, at(s.y[i - 1]).f, at(s.y[i]).f
+            x0, y0, y1 = at(s.x_val[i - 1]).f, at(s.y_val[i - 1]).f, at(s.y_val[i]).f
             return y0 + (value - x0) * (y1 - y0) / (x1 - x0)
-    return at(s.y[15]).f
+    return at(s.y_val[15]).f
 
 cdef void lincurve(Lincurve* s, long period) noexcept nogil:
     at(s.out).f = at(s.out_io).f = curve(s, at(s.in_).f)

@@ -36,7 +36,7 @@ DECLARED: dict[str, Declaration] = {}
 
 @dataclass(frozen=True)
 class Entry:
-    """A pin or parameter; ``count`` of them where the name contains a format field like ``{}`` or ``{:02}``."""
+    """A pin or parameter; ``count`` of them where the name has a field: ``{}``, ``{:02}``, ``{letter}`` for A to E."""
 
     is_pin: bool
     type: int
@@ -49,7 +49,7 @@ class Entry:
 
     def names(self, personality: int) -> Iterator[str]:
         number = self.personal(personality) if self.personal else self.count
-        return (self.name.format(i) for i in range(number))
+        return (self.name.format(i, letter="ABCDE"[i % 5]) for i in range(number))
 
 
 def pin_in(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
@@ -84,18 +84,23 @@ class Declaration:
     shared: dict[str, int] = field(default_factory=dict)
     counted_by: str = "count"
     default_count: int = 1
+    most: int | None = None
     uses_fp: bool = True
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
     sizes: bool = False  # `counted_by` takes a list, a personality for each instance
+    options: tuple[str, ...] = ()  # further parameters, which `decode` understands
+    decode: Callable[[dict[str, str]], list[int]] | None = None  # personalities from the parameters
     state: tuple[int, ...] = ()  # machine words behind the pins
+    keep_personality: bool = False  # as one more such word
+    set_up: Callable[[int], None] | None = None  # called with the address of each new instance
 
     def load(self, host: Host, args: dict[str, str]) -> None:
         """``loadrt``: make every instance."""
         self._check(args)
         comp = host.component(self.name)
         memories = []
-        personalities = _numbers(self.name, args, self.counted_by if self.sizes else "personality")
+        personalities = self._personalities(args)
         for i, instance in enumerate(self.instances(args)):
             personality = personalities[i] if i < len(personalities) else self.personality or 0
             memories.append(self._instance(comp, instance, personality))
@@ -103,7 +108,7 @@ class Declaration:
         comp.ready()
 
     def _check(self, args: dict[str, str]) -> None:
-        allowed = [self.counted_by, "names", *(["personality"] if self.personality is not None else [])]
+        allowed = [self.counted_by, "names", *self.options, *(["personality"] if self.personality is not None else [])]
         for key in args:
             if key not in allowed:
                 raise HalError(f"{self.name}: unknown parameter '{key}'; {', '.join(allowed)} are known")
@@ -114,11 +119,20 @@ class Declaration:
         """The instances' names."""
         if "names" in args:
             return [name for name in args["names"].split(",") if name]
-        counts = _numbers(self.name, args, self.counted_by) or [self.default_count]
-        count = len(counts) if self.sizes else counts[0]
-        if min(counts) < 1 or (len(counts) > 1 and not self.sizes):
-            raise HalError(f"{self.name}: {self.counted_by}={args[self.counted_by]}: a number from 1 would be right")
+        if self.sizes:
+            count = len(self._personalities(args))
+        else:
+            counts = numbers(self.name, args, self.counted_by) or [self.default_count]
+            count = (counts[0] or self.default_count) if len(counts) == 1 else 0
+        if count < 1 or (self.most is not None and count > self.most):
+            most = "" if self.most is None else f" to {self.most}"
+            raise HalError(f"{self.name}: {self.counted_by}={args.get(self.counted_by, '')}: from 1{most} would be right")
         return [f"{self.prefix}.{i}" for i in range(count)]
+
+    def _personalities(self, args: dict[str, str]) -> list[int]:
+        if self.decode is not None:
+            return self.decode(args)
+        return numbers(self.name, args, self.counted_by if self.sizes else "personality")
 
     @property
     def prefix(self) -> str:
@@ -134,8 +148,10 @@ class Declaration:
                 item = make(f"{instance}{self.separator}{name}", entry.type, entry.dir, entry.default)
                 memory.put(offset + i * WORD, item.address)
             offset += entry.count * WORD
-        for i, word in enumerate(self.state):
+        for i, word in enumerate((*self.state, personality) if self.keep_personality else self.state):
             memory.put(offset + i * WORD, word)
+        if self.set_up is not None:
+            self.set_up(memory.address)
         for suffix, code in self.functions.items():
             name = f"{instance}.{suffix}" if suffix else instance
             comp.function(name, code, memory.address, uses_fp=self.uses_fp)
@@ -154,7 +170,7 @@ class Declaration:
             comp.function(f"{self.prefix}.{suffix}", code, everyone.address, uses_fp=self.uses_fp)
 
 
-def _numbers(component: str, args: dict[str, str], key: str) -> list[int]:
+def numbers(component: str, args: dict[str, str], key: str) -> list[int]:
     """The numbers of a list with commas; none where it is not given."""
     try:
         return [int(word, 0) for word in args.get(key, "").split(",") if word]
@@ -172,5 +188,5 @@ def declare(name: str, doc: str, size: int, entries: list[Entry], functions: dic
 
 __all__ = [
     "BIT", "FLOAT", "S32", "S64", "U32", "U64",
-    "declare", "param_ro", "param_rw", "pin_in", "pin_io", "pin_out",
+    "declare", "numbers", "param_ro", "param_rw", "pin_in", "pin_io", "pin_out",
 ]  # fmt: skip

@@ -252,16 +252,16 @@ declare("bitslice", "The bits of a number; personality= is how many", sizeof(Bit
 
 
 cdef struct Bitwise:
-    hal_pin in0, in1, and_, or_, xor, nand, nor, xnor
+    hal_pin in0, in1, out_and, out_or, out_xor, out_nand, out_nor, out_xnor
 
 cdef void bitwise(Bitwise* s, long period) noexcept nogil:
     cdef uint32_t a = at(s.in0).u, b = at(s.in1).u
-    at(s.and_).u = a & b
-    at(s.or_).u = a | b
-    at(s.xor).u = a ^ b
-    at(s.nand).u = ~(a & b)
-    at(s.nor).u = ~(a | b)
-    at(s.xnor).u = ~(a ^ b)
+    at(s.out_and).u = a & b
+    at(s.out_or).u = a | b
+    at(s.out_xor).u = a ^ b
+    at(s.out_nand).u = ~(a & b)
+    at(s.out_nor).u = ~(a | b)
+    at(s.out_xnor).u = ~(a ^ b)
 
 declare("bitwise", "Logic of two numbers, bit by bit", sizeof(Bitwise), [
     pin_in(U32, "in0"), pin_in(U32, "in1"), pin_out(U32, "out-and"), pin_out(U32, "out-or"), pin_out(U32, "out-xor"),

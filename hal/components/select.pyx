@@ -43,7 +43,7 @@ declare_mux(8, 3)
 cdef struct Mux16:
     hal_pin sel[4]
     hal_pin in_[MOST]
-    hal_pin graycode, suppress, debounce_time, out_f, out_s, elapsed, selected
+    hal_pin use_graycode, suppress_no_input, debounce_time, out_f, out_s, elapsed, selected
     int32_t seen
 
 cdef int gray_to_binary(int code) noexcept nogil:
@@ -57,13 +57,13 @@ cdef int32_t to_s32(double value) noexcept nogil:
 
 cdef void mux16(Mux16* s, long period) noexcept nogil:
     cdef int bits = selected(<Mux*>s)
-    cdef int number = gray_to_binary(bits) if at(s.graycode).b else bits
+    cdef int number = gray_to_binary(bits) if at(s.use_graycode).b else bits
     if number != s.seen:
         s.seen = number
         at(s.elapsed).f = 0.0
     elif at(s.elapsed).f < at(s.debounce_time).f:
         at(s.elapsed).f += period * 1e-9
-    if at(s.elapsed).f < at(s.debounce_time).f or (at(s.suppress).b and bits == 0):
+    if at(s.elapsed).f < at(s.debounce_time).f or (at(s.suppress_no_input).b and bits == 0):
         return
     at(s.selected).s = number
     at(s.out_f).f = at(s.in_[number]).f

@@ -8,7 +8,7 @@ from hal.components.declare import BIT, FLOAT, S32, U32, declare, param_ro, para
 
 
 cdef struct Edge:
-    hal_pin in_, out, out_invert, both, in_edge, width_ns, left_ns, last_in
+    hal_pin in_, out, out_invert, both, in_edge, out_width_ns, time_left_ns, last_in
     uint8_t started
 
 cdef void edge(Edge* s, long period) noexcept nogil:
@@ -16,11 +16,11 @@ cdef void edge(Edge* s, long period) noexcept nogil:
     cdef bint before = at(s.last_in).b != 0
     cdef bint falling = at(s.in_edge).b != 0
     if s.started and now != before and (at(s.both).b or now != falling):
-        at(s.left_ns).s = at(s.width_ns).s
+        at(s.time_left_ns).s = at(s.out_width_ns).s
         at(s.out).b = 1
-    elif at(s.left_ns).s > 0:
-        at(s.left_ns).s -= <int32_t>min(period, at(s.left_ns).s)
-        at(s.out).b = at(s.left_ns).s > 0
+    elif at(s.time_left_ns).s > 0:
+        at(s.time_left_ns).s -= <int32_t>min(period, at(s.time_left_ns).s)
+        at(s.out).b = at(s.time_left_ns).s > 0
     else:
         at(s.out).b = 0
     s.started = 1

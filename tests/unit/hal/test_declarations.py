@@ -1,0 +1,97 @@
+"""Every declared component: its table fits its struct, and it loads, runs and goes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from hal import components
+from hal.components.declare import DECLARED, Declaration
+from hal.realtime import Host
+
+FOLDER = Path(components.__file__).parent
+components.names()  # imports the groups
+
+STRUCT = re.compile(r"^cdef struct (\w+):\n((?:    .*\n)+)", re.M)
+DECLARE = re.compile(r'^\s*declare\(f?"(\w+)".*?sizeof\((\w+)\)', re.M | re.S)
+
+
+def structs() -> dict[str, list[tuple[str, str]]]:
+    """By struct: (member, length or "") of the pins it begins with."""
+    found = {}
+    for path in FOLDER.glob("*.pyx"):
+        for name, body in STRUCT.findall(path.read_text()):
+            members = []
+            for line in body.splitlines():
+                kind, _, rest = line.strip().partition(" ")
+                if kind != "hal_pin":
+                    break
+                members += [re.fullmatch(r"(\w+)(?:\[(\w+)\])?", part.strip()).groups("") for part in rest.split(",")]
+            found[f"{path.stem}.{name}"] = members
+    return found
+
+
+def struct_of(declaration: Declaration) -> str | None:
+    """The struct that a literal declaration names; None where it is made in a loop."""
+    for path in FOLDER.glob("*.pyx"):
+        for name, struct in DECLARE.findall(path.read_text()):
+            if name == declaration.name:
+                return f"{path.stem}.{struct}"
+    return None
+
+
+def plain(name: str) -> str:
+    """A pin's or a member's name without numbers, dashes and underscores, which C and HAL spell differently."""
+    return re.sub(r"\{.*?\}|[-_.0-9]", "", name).lower()
+
+
+LITERAL = sorted(name for name, declaration in DECLARED.items() if struct_of(declaration))
+
+
+@pytest.mark.parametrize("name", LITERAL)
+def test_the_table_names_the_members_of_the_struct_in_order(name: str) -> None:
+    declaration = DECLARED[name]
+    struct = struct_of(declaration)
+    assert struct is not None
+    members = []
+    for member, length in structs()[struct]:
+        spelled_out = length.isdigit() and sum(entry.count for entry in declaration.entries) == len(declaration.entries)
+        members += [member.strip("_")] * (int(length) if spelled_out else 1)
+    assert [plain(entry.name) for entry in declaration.entries] == [plain(member) for member in members]
+
+
+@pytest.mark.parametrize("name", sorted(DECLARED))
+def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
+    declaration = DECLARED[name]
+    words = [f"{declaration.counted_by}=2,3"] if declaration.sizes else [f"{declaration.counted_by}=2"]
+    host.load("threads", ["name1=t", "period1=100000"])
+    host.load(name, words)
+    functions = [funct.name for funct in host.hal.segment.functs()]
+    for function in functions:
+        host.add_function(function, "t")
+    host.hal.start_threads()
+    thread = host.hal.segment.find_thread("t")
+    assert thread is not None
+    seen = thread.cycles
+    while thread.cycles < seen + 3:
+        pass
+    host.unload(name)
+    assert functions
+    assert host.hal.segment.functs() == []
+    assert [pin.name for pin in host.hal.segment.items(0)] == ["t.time"]
+
+
+@pytest.mark.parametrize("name", sorted(DECLARED))
+def test_names_become_instances(host: Host, name: str) -> None:
+    if DECLARED[name].sizes:
+        pytest.skip("its instances are counted by a list")
+    personality = [] if DECLARED[name].personality is None else ["personality=0x1F02,0x1F02"]
+    host.load(name, ["names=one,two", *personality])
+    owners = {pin.name.split(".")[0] for pin in host.hal.segment.items(0) if not pin.name.endswith(".time")}
+    assert owners == {"one", "two"}
+
+
+def test_every_component_has_a_text() -> None:
+    assert [name for name, declaration in DECLARED.items() if not declaration.doc] == []
