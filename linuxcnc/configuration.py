@@ -53,8 +53,14 @@ class Configuration:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
         return self._command("DISPLAY", "DISPLAY", "linuxcncrsh")
 
-    def _server(self) -> list[str]:
-        """The NML server; side by side with another machine (a namespace of its own) it may go without its port."""
+    def _server(self) -> list[str] | None:
+        """The NML server, where a buffer is to be reached from elsewhere.
+
+        Side by side with another machine, in a namespace of its own, it may go without a port that is taken.
+        """
+        buffers = NmlConfig.load(self.nml_file).buffer_lines
+        if not any(one.tcp or one.udp or one.stcp or one.serial_port for one in buffers):
+            return None
         optional = ["--optional"] if namespace.VARIABLE in os.environ else []
         return [*python_module(MODULES["linuxcncsvr"]), "-ini", str(self.path), *optional]
 

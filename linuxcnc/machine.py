@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import linuxcnc
 from hal._shm import USER
 from linuxcnc import takedown
 from linuxcnc.configuration import Configuration
@@ -58,6 +59,7 @@ class Machine:
         self._nml_file = str(configuration.nml_file) if configuration.nml_file else None
         self._environment = configuration.environment()
         os.environ.update(self._environment)
+        linuxcnc.nmlfile = self._nml_file or linuxcnc.nmlfile
         self._instance = Instance()
         for record in self._instance.remove_leftovers():
             report(f"ended {record.name} (process {record.pid}) of an earlier run that was killed")
@@ -79,7 +81,8 @@ class Machine:
         self._session.host.start()
         self._spawn("io", configuration.io)
         self._spawn("task", configuration.task)
-        self._spawn("server", configuration.server)
+        if configuration.server is not None:
+            self._spawn("server", configuration.server)
         self.wait_until(self._host_runs, "the realtime host")
         self.wait_until(self._component_ready("iocontrol"), "io")
         if configuration.halui is not None:

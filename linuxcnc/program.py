@@ -157,7 +157,7 @@ class Operator:
         if status.task_state != linuxcnc.STATE_ON:
             raise ProgramError("the machine was switched off while the program was running")
         if status.interp_state == linuxcnc.INTERP_PAUSED and status.task_paused:
-            self._display.say(f"line {status.motion_line}: the program paused; going on")
+            self._display.say(f"line {status.motion_line or status.current_line}: the program paused; going on")
             self._command.auto(linuxcnc.AUTO_RESUME)
             self._status.poll()
             return False

@@ -1,4 +1,4 @@
-"""A process is killed while the machine cuts: the rest notices and stops under its limits; a new start works at once."""
+"""A process dies while the machine cuts: the rest notices and stops under its limits; a new start works at once."""
 
 import os
 import signal
