@@ -10,10 +10,11 @@ from libc.math cimport fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 
 from emcmot.tp.corner cimport blend_position
+from emcmot.tp.follow cimport count_way, follows_position, follows_velocity, spindle_speed, waits_for_index
 from emcmot.tp.geometry cimport position
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
-from emcmot.tp.model cimport AXES, SPAN_BLEND, SPAN_LINE, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, extend, feed_cap, refresh, sweep_caps
+from emcmot.tp.model cimport AXES, CHAIN_NONE, CHAIN_WAITING, SPAN_BLEND, SPAN_LINE, Segment, Span, TpState
+from emcmot.tp.path cimport exit_limit, extend, feed_cap, feed_scale, refresh, sweep_caps
 from emcmot.tp.tp cimport TP_FH_ENABLED
 
 cdef enum:
@@ -77,9 +78,25 @@ cdef int64_t current_id(const TpState* tp) noexcept nogil:
 
 
 cdef int _holding(const TpState* tp) noexcept nogil:
-    if tp.paused or tp.aborting or tp.feed_inhibit:
+    cdef const Segment* seg = _seg(tp, current_segment(tp))
+    if tp.aborting:
         return 1
-    return tp.feed_hold and _seg(tp, current_segment(tp)).enables & TP_FH_ENABLED
+    if follows_position(seg) and tp.chain > CHAIN_WAITING:       # a thread goes on until its end
+        return 0
+    return tp.paused or tp.feed_inhibit or (tp.feed_hold and seg.enables & TP_FH_ENABLED)
+
+
+cdef double _target(TpState* tp) noexcept nogil:
+    """The w that the active span should have now: hard limits, feed and overrides, holds, the spindle that it follows."""
+    cdef const Segment* seg = _seg(tp, current_segment(tp))
+    cdef double target, v
+    if _holding(tp):
+        return 0.0
+    target = feed_cap(tp, tp.active)
+    if follows_position(seg) or follows_velocity(seg):
+        v = spindle_speed(tp, seg) * (feed_scale(tp, seg) if seg.sync_velocity else 1.0)
+        target = fmin(target, v * v)
+    return target
 
 
 cdef void advance(TpState* tp) noexcept nogil:
@@ -107,6 +124,7 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
     tp.corner_known = 0
     tp.body_end = tp.body_goal = 0.0
     tp.aborting = tp.paused = tp.stepping = 0
+    tp.chain = CHAIN_NONE
     tp.u = tp.w = 0.0
     for i in range(AXES):
         tp.goal[i] = tp.pos[i]
@@ -135,7 +153,7 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
     """Move along the path for `left` seconds."""
     cdef Span* span
     cdef Phase phase
-    cdef double v, end_v, end_w, time
+    cdef double v, end_v, end_w, time, way
     cdef int count
     for count in range(PHASES_PER_PERIOD):
         if tp.w == 0.0 and _waiting(tp):
@@ -154,16 +172,19 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
         time = 2.0 * phase.way / (v + sqrt(end_w))
         if time <= left:
             left -= time
+            count_way(tp, _seg(tp, span.seg), phase.way)
             tp.u += phase.way
             tp.w = end_w
             continue
         end_v = v + phase.acceleration * left
         if end_v > 0.0:
-            tp.u += 0.5 * (v + end_v) * left
+            way = 0.5 * (v + end_v) * left
             tp.w = end_v * end_v
         else:
-            tp.u += 0.5 * tp.w / fabs(phase.acceleration)
+            way = 0.5 * tp.w / fabs(phase.acceleration)
             tp.w = 0.0
+        count_way(tp, _seg(tp, span.seg), way)
+        tp.u += way
         return
 
 
@@ -174,6 +195,8 @@ cdef int _waiting(TpState* tp) noexcept nogil:
     if index < tp.started:
         return 0
     if seg.wait_spindles & ~tp.at_speed or (seg.indexer >= 0 and not tp.unlocked):
+        return 1
+    if follows_position(seg) and waits_for_index(tp, seg):
         return 1
     tp.started = index + 1
     return 0
@@ -200,13 +223,13 @@ cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
     return 1
 
 
-cdef Phase _line_phase(const TpState* tp, const Span* span) noexcept nogil:
+cdef Phase _line_phase(TpState* tp, const Span* span) noexcept nogil:
     """Accelerate to the feed, hold it, brake for what follows: whichever is due now."""
     cdef Phase phase
     cdef double x = span.h - tp.u, a = span.acc
     cdef double limit = exit_limit(tp, tp.active)
     cdef double braking = limit + 2.0 * a * x        # w from which full braking arrives at the limit
-    cdef double target = 0.0 if _holding(tp) else feed_cap(tp, tp.active)
+    cdef double target = _target(tp)
     if tp.w > target * (1.0 + SAME_SPEED):
         phase.acceleration = -a
         phase.way = fmin(x, (tp.w - target) / (2.0 * a))
@@ -246,7 +269,7 @@ cdef Phase _curve_phase(TpState* tp, const Span* span) noexcept nogil:
             tp.held = phase.acceleration
             tp.held_span = tp.active
         return phase
-    target = feed_cap(tp, tp.active)
+    target = _target(tp)
     phase.acceleration = fmax(low, fmin(high, (fmin(limit, target) - tp.w) / (2.0 * x)))
     tp.held = phase.acceleration
     tp.held_span = tp.active

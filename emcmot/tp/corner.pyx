@@ -9,6 +9,7 @@ segments in its middle: for lines by d |r t2 - t1| / 4.
 
 from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 
+from emcmot.tp.follow cimport follows_position
 from emcmot.tp.geometry cimport derivatives, position
 from emcmot.tp.model cimport AXES, Segment, TpState
 from emcmot.tp.tp cimport TP_ARC, TP_TERM_BLEND, TP_TERM_STOP
@@ -56,7 +57,7 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     if a.term == TP_TERM_STOP or a.motion_type >= MOTION_TOOL_CHANGE or b.motion_type >= MOTION_TOOL_CHANGE:
         corner.stop = 1
         return corner
-    if b.wait_spindles or b.indexer >= 0:
+    if b.wait_spindles or b.indexer >= 0 or (follows_position(b) and not follows_position(a)):
         corner.stop = 1
         return corner
     if not corner.stop:

@@ -27,6 +27,12 @@ cdef enum SpanKind:
     SPAN_ARC = 2             # part of an arc, short enough for linear interpolation of its derivatives
     SPAN_BLEND = 3           # part of the corner between segment `seg - 1` and segment `seg`
 
+cdef enum Chain:             # position-synchronised moves one after the other
+    CHAIN_NONE = 0
+    CHAIN_WAITING = 1        # at rest, for the index pulse
+    CHAIN_ACCELERATING = 2   # to the speed that the spindle asks for
+    CHAIN_FOLLOWING = 3
+
 ctypedef struct Segment:
     int kind                 # TpKind
     int motion_type
@@ -141,5 +147,7 @@ ctypedef struct TpState:
 
     double spindle_revs[8]
     double spindle_rps[8]
-    double sync_origin
-    int64_t sync_seg
+    int chain                # Chain: where a chain of position-synchronised moves is
+    int index_seen
+    double chain_revs        # spindle revolutions that the way travelled in the chain stands for
+    double chain_origin      # spindle revolutions at which it would have begun without acceleration

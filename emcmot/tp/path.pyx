@@ -10,6 +10,7 @@ from libc.math cimport INFINITY, ceil, fabs, fmax, fmin
 from libc.stdint cimport int64_t
 
 from emcmot.tp.corner cimport Corner, blend_derivatives, blend_spans, decide_corner
+from emcmot.tp.follow cimport follows_position, follows_velocity
 from emcmot.tp.geometry cimport derivatives, norm
 from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
@@ -48,7 +49,9 @@ cdef double feed_scale(const TpState* tp, const Segment* seg) noexcept nogil:
 
 
 cdef double _feed(const TpState* tp, const Segment* seg) noexcept nogil:
-    cdef double feed = fmin(seg.vel * feed_scale(tp, seg), seg.vel_max)
+    cdef double feed = seg.vel_max
+    if not follows_position(seg) and not follows_velocity(seg):
+        feed = fmin(seg.vel * feed_scale(tp, seg), feed)
     return fmin(feed, tp.vel_limit) if seg.unit == UNIT_XYZ and tp.vel_limit > 0.0 else feed
 
 

@@ -48,12 +48,17 @@ cdef class Planner:
             raise PlannerError("the position can be set only at rest with an empty queue")
 
     def add_line(self, end, double vel, *, vel_max=None, double acc=0.0, int term=TP_TERM_BLEND, double tolerance=0.0,
-                 int id=1, int motion_type=FEED, int enables=TP_FS_ENABLED | TP_FH_ENABLED) -> bool:
-        """Queue a straight move; False when the queue is full."""
+                 int id=1, int motion_type=FEED, int enables=TP_FS_ENABLED | TP_FH_ENABLED,
+                 int spindle=-1, double sync_revs=0.0, bint sync_velocity=False, int wait_spindles=0) -> bool:
+        """Queue a straight move; False when the queue is full. `sync_revs`: lu per revolution of `spindle`."""
         cdef TpSegment seg
         memset(&seg, 0, sizeof(seg))
         seg.kind = TP_LINE
         _nine(end, seg.end)
+        seg.spindle = spindle
+        seg.sync_revs = sync_revs
+        seg.sync_velocity = sync_velocity
+        seg.wait_spindles = wait_spindles
         return self._add(&seg, vel, vel_max, acc, term, tolerance, id, motion_type, enables)
 
     def add_arc(self, end, center, normal, int turn, double vel, *, vel_max=None, double acc=0.0,
@@ -65,6 +70,7 @@ cdef class Planner:
         memset(&seg, 0, sizeof(seg))
         seg.kind = TP_ARC
         seg.turn = turn
+        seg.spindle = -1
         _nine(end, seg.end)
         for i in range(3):
             seg.center[i] = center[i]
@@ -82,7 +88,7 @@ cdef class Planner:
         seg.id = id
         seg.motion_type = motion_type
         seg.enables = enables
-        seg.spindle = seg.indexer = -1
+        seg.indexer = -1
         result = tp_add(self.tp, seg, NULL)
         if result == TP_BAD:
             raise PlannerError(f"move {id} has no usable geometry or speed")
@@ -102,6 +108,19 @@ cdef class Planner:
 
     def feed_hold(self, bint hold) -> None:
         tp_set_feed_hold(self.tp, hold)
+
+    def feed_inhibit(self, bint inhibit) -> None:
+        tp_set_feed_inhibit(self.tp, inhibit)
+
+    def spindle(self, int spindle, double revs, double rps) -> None:
+        """Feedback of a spindle: revolutions since its index, and revolutions per second."""
+        tp_spindle(self.tp, spindle, revs, rps)
+
+    def at_speed(self, int spindles) -> None:
+        tp_set_at_speed(self.tp, spindles)
+
+    def index_seen(self) -> None:
+        tp_index_seen(self.tp)
 
     def pause(self) -> None:
         tp_pause(self.tp)

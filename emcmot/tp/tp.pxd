@@ -67,6 +67,7 @@ ctypedef struct TpStatus:
     int done                 # queue empty and at rest
     int paused
     int reversing
+    int wants_index          # spindle whose index pulse a chain of synchronised moves waits for, -1: none
     int wants_unlock         # joint whose lock the next move waits for, -1: none
 
 cdef extern from *:
@@ -96,6 +97,7 @@ cdef void tp_step_once(Tp* tp) noexcept nogil                                # r
 cdef void tp_abort(Tp* tp) noexcept nogil                                    # ramp to rest on the path, then drop the queue
 cdef int tp_set_reverse(Tp* tp, int reverse) noexcept nogil                  # only at rest (paused); TP_BAD otherwise
 cdef void tp_spindle(Tp* tp, int spindle, double revs, double speed_rps) noexcept nogil  # feedback for synchronised moves
+cdef void tp_index_seen(Tp* tp) noexcept nogil                               # the index has passed; revs count from 0 there
 cdef int tp_take_io(Tp* tp, TpIo* io) noexcept nogil                         # 1: a segment with outputs has started, io filled
 cdef void tp_run_cycle(Tp* tp) noexcept nogil                                # one servo period
 cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil

@@ -12,7 +12,7 @@ from libc.string cimport memcpy, memset
 from emcmot.tp.advance cimport advance, current_id, current_raw, current_segment
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, SPAN_BLEND, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, UNIT_XYZ, Segment, Span, TpState
 from emcmot.tp.path cimport feed_scale
 
 cdef enum:
@@ -251,6 +251,10 @@ cdef void tp_spindle(Tp* tp, int spindle, double revs, double speed_rps) noexcep
         _state(tp).spindle_rps[spindle] = speed_rps
 
 
+cdef void tp_index_seen(Tp* tp) noexcept nogil:
+    _state(tp).index_seen = 1
+
+
 cdef void tp_run_cycle(Tp* tp) noexcept nogil:
     advance(_state(tp))
 
@@ -269,7 +273,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     status.paused = s.paused
     status.done = _idle(s)
     status.spindle = -1
-    status.wants_unlock = -1
+    status.wants_index = status.wants_unlock = -1
     if s.active >= s.span_tail:
         return
     seg = _raw(s, current_raw(s))
@@ -285,3 +289,5 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     status.active_depth = 2 if s.spans[s.active & s.span_mask].kind == SPAN_BLEND else 1
     if current_segment(s) >= s.started and seg.indexer >= 0 and s.w == 0.0:
         status.wants_unlock = seg.indexer
+    if s.chain == CHAIN_WAITING and not s.index_seen:
+        status.wants_index = seg.spindle
