@@ -262,6 +262,8 @@ cdef void controller(Motion* m) noexcept nogil:
     move(m)
     write_queued_outputs(m)
     m.at_rest = resting(m)
+    if m.at_rest:
+        m.stopping = 0
     end_jogs(m)
     write_joints(m)
     write_pins(m)

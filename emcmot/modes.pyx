@@ -25,7 +25,7 @@ cdef int resting(Motion* m) noexcept nogil:
     """Whether nothing moves or is about to."""
     cdef int n
     if m.mode == MotionState_COORD:
-        return m.tp_status.done
+        return m.tp_status.done and m.probing == PROBE_OFF
     if m.mode == MotionState_TELEOP:
         for n in range(MAX_AXES):
             if m.axis[n].teleop.active:
@@ -150,8 +150,6 @@ cdef void set_mode(Motion* m) noexcept nogil:
     if m.enabled and not m.enable_wanted:
         switch_off(m)
     rest = resting(m)
-    if rest:
-        m.stopping = 0
     if m.enable_wanted and not m.enabled and rest and eoffsets_still(m):
         if m.mode != MotionState_FREE:
             enter_free(m)

@@ -15,11 +15,12 @@ from emcmot._messages cimport (
     MotCommandStatus_OK,
     TermCond_STOP,
 )
+from emcmot.arc cimport arc_box
 from emcmot.probe cimport PROBE_OFF, PROBE_QUEUED
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
 from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TpSegment, tp_add
-from emcmot.world cimport check_end_point
+from emcmot.world cimport check_box, check_end_point
 
 cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
@@ -58,8 +59,14 @@ cdef void begin_segment(Motion* m, const EMCMOT_COMMAND* c, TpSegment* s) noexce
         s.wait_spindles |= 1 << m.sync_spindle
 
 
+cdef const double* queue_end(Motion* m) noexcept nogil:
+    """Where the next move starts."""
+    return &m.tp_status.pos[0] if m.tp_status.done else &m.queue_end[0]
+
+
 cdef int queue(Motion* m, const TpSegment* s, const char* what) noexcept nogil:
     """Hand the segment, and the outputs that wait for a move, to the planner."""
+    cdef int n
     cdef int result = tp_add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
     if result == TP_FULL:
         snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: the motion queue is full", what, <long>s.id)
@@ -68,6 +75,8 @@ cdef int queue(Motion* m, const TpSegment* s, const char* what) noexcept nogil:
         snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: bad geometry or speed", what, <long>s.id)
         return MotCommandStatus_INVALID_PARAMS
     m.tp_status.done = 0
+    for n in range(MAX_AXES):
+        m.queue_end[n] = s.end[n]
     m.pending_io_set = 0
     m.pending_io.dout_mask = 0
     m.pending_io.aout_mask = 0
@@ -87,13 +96,16 @@ cdef int set_line(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 cdef int set_circle(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     cdef TpSegment s
+    cdef double box_low[3]
+    cdef double box_high[3]
     begin_segment(m, c, &s)
     s.kind = TP_ARC
     s.turn = c.turn
     s.indexer = -1
     s.center[0], s.center[1], s.center[2] = c.center.x, c.center.y, c.center.z
     s.normal[0], s.normal[1], s.normal[2] = c.normal.x, c.normal.y, c.normal.z
-    if check_end_point(m, b"Circular", c.id, s.end) != 0:
+    arc_box(queue_end(m), &s, box_low, box_high)
+    if check_end_point(m, b"Circular", c.id, s.end) != 0 or check_box(m, b"Circular", c.id, box_low, box_high) != 0:
         return MotCommandStatus_INVALID_PARAMS
     return queue(m, &s, b"circular")
 

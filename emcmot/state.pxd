@@ -270,6 +270,7 @@ ctypedef struct Motion:
     double sync_revs
     int sync_velocity
     int wait_spindles        # mask for the next feed move
+    double queue_end[MAX_AXES]  # end point of the move queued last
     int last_move_type       # motion type of the move queued last
     int last_move_synchronised
     int override_limits      # mask: 1 << 2n negative, 2 << 2n positive limit of joint n

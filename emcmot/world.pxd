@@ -14,6 +14,7 @@ cdef int world_from_joints(Motion* m) noexcept nogil
 cdef int command_world(Motion* m, double* pose) noexcept nogil
 cdef int align_joints(Motion* m) noexcept nogil
 cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose) noexcept nogil
+cdef int check_box(Motion* m, const char* what, long move_id, const double* low, const double* high) noexcept nogil
 cdef void refresh_planner_limits(Motion* m) noexcept nogil
 cdef int kinematics_usable(Motion* m) noexcept nogil
 cdef const char* AXIS_NAMES

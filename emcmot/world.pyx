@@ -187,6 +187,32 @@ cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose
     return 0
 
 
+cdef int check_box(Motion* m, const char* what, long move_id, const double* low, const double* high) noexcept nogil:
+    """0 where x, y and z may be anywhere from ``low`` to ``high``; joints are looked at where a joint is an axis."""
+    cdef char place[16]
+    cdef Axis* axis
+    cdef Joint* joint
+    cdef int n, i
+    for i in range(3):
+        axis = &m.axis[i]
+        snprintf(place, sizeof(place), b"%c", AXIS_NAMES[i])
+        if high[i] + m.eoffset[i] > axis.max_limit + slack(axis.max_limit):
+            return refuse(m, what, move_id, place, b"positive", high[i] + m.eoffset[i], axis.max_limit)
+        if low[i] + m.eoffset[i] < axis.min_limit - slack(axis.min_limit):
+            return refuse(m, what, move_id, place, b"negative", low[i] + m.eoffset[i], axis.min_limit)
+    for n in range(m.kins.joints):
+        joint = &m.joint[n]
+        i = m.kins.axis_of_joint[n]
+        if not joint.active or not 0 <= i < 3:
+            continue
+        snprintf(place, sizeof(place), b"joint %d", n)
+        if high[i] > joint.max_limit + slack(joint.max_limit):
+            return refuse(m, what, move_id, place, b"positive", high[i], joint.max_limit)
+        if low[i] < joint.min_limit - slack(joint.min_limit):
+            return refuse(m, what, move_id, place, b"negative", low[i], joint.min_limit)
+    return 0
+
+
 cdef void refresh_planner_limits(Motion* m) noexcept nogil:
     """Tell the planner what each axis may do; an axis that is a joint may not do more than its joint."""
     cdef double vel, acc
