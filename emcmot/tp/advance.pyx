@@ -8,14 +8,16 @@ asks for less speed, it is the smallest. Both keep the state in the set from whi
 
 from libc.math cimport fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
+from libc.string cimport memcpy
 
 from emcmot.tp.corner cimport blend_position
 from emcmot.tp.follow cimport count_way, follows_position, follows_velocity, spindle_speed, waits_for_index
 from emcmot.tp.geometry cimport position
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
-from emcmot.tp.model cimport AXES, CHAIN_NONE, CHAIN_WAITING, SPAN_BLEND, SPAN_LINE, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, CHAIN_NONE, CHAIN_WAITING, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
 from emcmot.tp.path cimport exit_limit, extend, feed_cap, feed_scale, refresh, sweep_caps
-from emcmot.tp.tp cimport TP_FH_ENABLED
+from emcmot.tp.tap cimport at_rest, tap
+from emcmot.tp.tp cimport TP_FH_ENABLED, TP_TAP
 
 cdef enum:
     PHASES_PER_PERIOD = 20000    # bound of the work of one period
@@ -110,7 +112,7 @@ cdef void advance(TpState* tp) noexcept nogil:
     if tp.active < tp.span_tail:
         _move(tp, tp.dt)
         _publish(tp)
-    if tp.aborting and tp.w == 0.0:
+    if tp.aborting and at_rest(tp):
         _drop_queue(tp)
     for i in range(AXES):
         tp.vel[i] = (tp.pos[i] - before[i]) / tp.dt
@@ -125,6 +127,7 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
     tp.body_end = tp.body_goal = 0.0
     tp.aborting = tp.paused = tp.stepping = 0
     tp.chain = CHAIN_NONE
+    tp.tap_phase = TAP_NONE
     tp.u = tp.w = 0.0
     for i in range(AXES):
         tp.goal[i] = tp.pos[i]
@@ -132,11 +135,17 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
 
 cdef void _publish(TpState* tp) noexcept nogil:
     cdef const Span* span
+    cdef const Segment* seg
+    cdef int i
     if tp.active >= tp.span_tail:
         position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.pos)
         return
     span = _span(tp, tp.active)
-    if span.kind == SPAN_BLEND:
+    seg = _seg(tp, span.seg)
+    if seg.kind == TP_TAP and tp.tap_phase != TAP_NONE:
+        for i in range(AXES):
+            tp.pos[i] = seg.start[i] + seg.rate[i] * tp.tap_s
+    elif span.kind == SPAN_BLEND:
         blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, span.u0 + tp.u, tp.pos)
     else:
         position(_seg(tp, span.seg), span.u0 + tp.u, tp.pos)
@@ -159,6 +168,11 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
         if tp.w == 0.0 and _waiting(tp):
             return
         span = _span(tp, tp.active)
+        if _seg(tp, span.seg).kind == TP_TAP and tp.u == 0.0:
+            if tap(tp, _seg(tp, span.seg)):
+                memcpy(_seg(tp, span.seg).end, _seg(tp, span.seg).start, sizeof(span.dq0))
+                tp.u = span.h
+            return
         if tp.u >= span.h - NO_WAY:
             if not _next_span(tp, span):
                 return

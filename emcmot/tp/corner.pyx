@@ -12,7 +12,7 @@ from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 from emcmot.tp.follow cimport follows_position
 from emcmot.tp.geometry cimport derivatives, position
 from emcmot.tp.model cimport AXES, Segment, TpState
-from emcmot.tp.tp cimport TP_ARC, TP_TERM_BLEND, TP_TERM_STOP
+from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND, TP_TERM_STOP
 
 cdef enum:
     MOTION_TOOL_CHANGE = 4
@@ -58,6 +58,9 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
         corner.stop = 1
         return corner
     if b.wait_spindles or b.indexer >= 0 or (follows_position(b) and not follows_position(a)):
+        corner.stop = 1
+        return corner
+    if a.kind == TP_TAP or b.kind == TP_TAP:
         corner.stop = 1
         return corner
     if not corner.stop:

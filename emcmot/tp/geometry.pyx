@@ -7,7 +7,7 @@ for lines and helices, on average for spirals).  Used by build (limits of the sp
 from libc.math cimport M_PI, atan2, ceil, cos, fabs, hypot, isfinite, sin, sqrt
 
 from emcmot.tp.model cimport AXES, UNIT_ABC, UNIT_UVW, UNIT_XYZ, Segment
-from emcmot.tp.tp cimport TP_ARC, TP_BAD, TP_LINE, TP_OK, TpSegment
+from emcmot.tp.tp cimport TP_ARC, TP_BAD, TP_LINE, TP_OK, TP_TAP, TpSegment
 
 cdef double LINEAR_MOTION = 1e-6     # lu; less xyz or uvw motion than this does not define the feed
 cdef double FULL_TURN_ANGLE = 1e-7   # rad; an arc that ends this near its start direction is a full turn
@@ -34,7 +34,7 @@ cdef int shape(Segment* seg, const TpSegment* given, const double* start) noexce
         seg.end[i] = given.end[i]
     seg.kind = given.kind
     seg.trim_start = seg.trim_end = 0.0
-    if given.kind == TP_LINE:
+    if given.kind == TP_LINE or given.kind == TP_TAP:
         _shape_line(seg)
         return TP_OK
     if given.kind == TP_ARC:

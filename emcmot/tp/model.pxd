@@ -33,6 +33,13 @@ cdef enum Chain:             # position-synchronised moves one after the other
     CHAIN_ACCELERATING = 2   # to the speed that the spindle asks for
     CHAIN_FOLLOWING = 3
 
+cdef enum TapPhase:
+    TAP_NONE = 0
+    TAP_IN = 1
+    TAP_OUT = 2              # from the bottom on: the spindle slows down, turns back, and leads out
+    TAP_LEAVE = 3            # from the start on: the spindle slows down again
+    TAP_PLACE = 4            # to the start
+
 ctypedef struct Segment:
     int kind                 # TpKind
     int motion_type
@@ -68,6 +75,7 @@ ctypedef struct Segment:
     double acc
     double tolerance
     double sync_revs
+    double retract_scale
 
 ctypedef struct Span:
     int kind                 # SpanKind
@@ -147,6 +155,10 @@ ctypedef struct TpState:
 
     double spindle_revs[8]
     double spindle_rps[8]
+    int tap_phase            # TapPhase
+    double tap_direction     # sign of the spindle's revolutions on the way in
+    double tap_s             # way from the start of the tap, also beyond its ends
+    double tap_v
     int chain                # Chain: where a chain of position-synchronised moves is
     int index_seen
     double chain_revs        # spindle revolutions that the way travelled in the chain stands for

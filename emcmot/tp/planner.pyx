@@ -61,6 +61,17 @@ cdef class Planner:
         seg.wait_spindles = wait_spindles
         return self._add(&seg, vel, vel_max, acc, term, tolerance, id, motion_type, enables)
 
+    def add_tap(self, end, double vel, double sync_revs, *, int spindle=0, double retract_scale=1.0, int id=1) -> bool:
+        """Queue a rigid tap to `end` and back, `sync_revs` lu per revolution; False when the queue is full."""
+        cdef TpSegment seg
+        memset(&seg, 0, sizeof(seg))
+        seg.kind = TP_TAP
+        _nine(end, seg.end)
+        seg.spindle = spindle
+        seg.sync_revs = sync_revs
+        seg.retract_scale = retract_scale
+        return self._add(&seg, vel, None, 0.0, TP_TERM_STOP, 0.0, id, FEED, 0)
+
     def add_arc(self, end, center, normal, int turn, double vel, *, vel_max=None, double acc=0.0,
                 int term=TP_TERM_BLEND, double tolerance=0.0, int id=1, int motion_type=ARC,
                 int enables=TP_FS_ENABLED | TP_FH_ENABLED) -> bool:

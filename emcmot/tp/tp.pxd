@@ -12,6 +12,7 @@ cdef enum:
 cdef enum TpKind:
     TP_LINE = 1
     TP_ARC = 2
+    TP_TAP = 3               # rigid tap: to `end` and back with spindle `spindle`, `sync_revs` lu a revolution
 
 cdef enum TpTerm:            # how a segment ends (EMCMOT_TERM_COND_*)
     TP_TERM_STOP = 1         # G61.1 exact stop
@@ -47,6 +48,7 @@ ctypedef struct TpSegment:
     double tolerance         # largest deviation from the programmed path
     double sync_revs         # lu per spindle revolution, 0: none
     int sync_velocity        # non-zero: only the velocity follows the spindle (G95), not its position
+    double retract_scale     # TP_TAP: spindle speed on the way out over that on the way in; handed back in TpStatus
     int wait_spindles        # bit mask: come to rest before this move and wait for these spindles to be at speed
     int indexer              # come to rest before this move until the lock of this joint is open; -1: none
 
@@ -68,6 +70,8 @@ ctypedef struct TpStatus:
     int paused
     int reversing
     int wants_index          # spindle whose index pulse a chain of synchronised moves waits for, -1: none
+    int wants_reverse        # spindle that a tap wants to turn backwards now, -1: none
+    double retract_scale     # by which it shall then turn faster
     int wants_unlock         # joint whose lock the next move waits for, -1: none
 
 cdef extern from *:

@@ -4,7 +4,7 @@ Called by motion on the servo thread and by the Python face in planner.pyx; uses
 move. All memory is taken in tp_create.
 """
 
-from libc.math cimport INFINITY, fabs, isfinite, sqrt
+from libc.math cimport INFINITY, fmin, isfinite
 from libc.stdint cimport int64_t
 from libc.stdlib cimport calloc, free
 from libc.string cimport memcpy, memset
@@ -12,8 +12,7 @@ from libc.string cimport memcpy, memset
 from emcmot.tp.advance cimport advance, current_id, current_raw, current_segment
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, UNIT_XYZ, Segment, Span, TpState
-from emcmot.tp.path cimport feed_scale
+from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
 
 cdef enum:
     SPAN_RING = 8192
@@ -130,6 +129,7 @@ cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
     seg.spindle = given.spindle
     seg.sync_velocity = given.sync_velocity
     seg.sync_revs = given.sync_revs
+    seg.retract_scale = given.retract_scale
     seg.wait_spindles = given.wait_spindles
     seg.indexer = given.indexer
     seg.id = given.id
@@ -139,7 +139,8 @@ cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
     seg.tolerance = given.tolerance
     seg.exit_stop = 1
     seg.exit_ratio = 1.0
-    memcpy(s.goal, seg.end, sizeof(s.goal))
+    if seg.kind != TP_TAP:
+        memcpy(s.goal, seg.end, sizeof(s.goal))
     seg.joins = s.raw_tail > 0 and can_join(_raw(s, s.raw_tail - 1), seg)
     s.raw_tail += 1
     _raw(s, s.raw_tail).has_io = 0
@@ -273,7 +274,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     status.paused = s.paused
     status.done = _idle(s)
     status.spindle = -1
-    status.wants_index = status.wants_unlock = -1
+    status.wants_reverse = status.wants_index = status.wants_unlock = -1
     if s.active >= s.span_tail:
         return
     seg = _raw(s, current_raw(s))
@@ -281,7 +282,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
         status.dtg[i] = seg.end[i] - s.pos[i]
     status.distance_to_go = norm(status.dtg, seg.unit)
     status.current_vel = norm(s.vel, seg.unit)
-    status.requested_vel = seg.vel * feed_scale(s, seg)
+    status.requested_vel = fmin(seg.vel, seg.vel_max)
     status.id = seg.id
     status.motion_type = seg.motion_type
     status.enables = seg.enables
@@ -291,3 +292,6 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
         status.wants_unlock = seg.indexer
     if s.chain == CHAIN_WAITING and not s.index_seen:
         status.wants_index = seg.spindle
+    if s.tap_phase == TAP_OUT:
+        status.wants_reverse = seg.spindle
+        status.retract_scale = seg.retract_scale

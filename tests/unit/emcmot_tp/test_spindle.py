@@ -1,5 +1,7 @@
 """Moves that follow a spindle: threads meet in one groove, feed per revolution follows its speed."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -22,8 +24,8 @@ class Lathe:
         self.time += DT
         speed = self.rps(self.time)
         self.revs += speed * DT
-        if self.planner.status()["wants_index"] >= 0 and self.revs % 1.0 < speed * DT:
-            self.revs %= 1.0
+        if self.planner.status()["wants_index"] >= 0 and abs(self.revs) % 1.0 < abs(speed) * DT:
+            self.revs = math.fmod(self.revs, 1.0)
             self.planner.index_seen()
         self.planner.spindle(0, self.revs, speed)
         return self.planner.step(1)[0][2], self.revs
@@ -108,3 +110,49 @@ def test_a_move_waits_until_its_spindles_are_at_speed():
     assert z == -5.0
     lathe.planner.at_speed(1)
     assert lathe.until_done()[-1][0] == -10.0
+
+
+class ReversingSpindle(Lathe):
+    """Turns the way the planner wants, with a motor of limited acceleration."""
+
+    def __init__(self, rps, rps_per_s):
+        super().__init__(lambda t: self.speed)
+        self.speed, self.wanted, self.rate = rps, rps, rps_per_s
+
+    def period(self):
+        status = self.planner.status()
+        wanted = self.wanted * (-status["retract_scale"] if status["wants_reverse"] == 0 else 1.0)
+        self.speed += np.clip(wanted - self.speed, -self.rate * DT, self.rate * DT)
+        return super().period()
+
+
+@pytest.mark.parametrize("retract_scale", [1.0, 2.0])
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_rigid_tap_follows_the_reversing_spindle_in_and_out(direction, retract_scale):
+    lathe = ReversingSpindle(5.0 * direction, 50.0)
+    lathe.planner.add_tap((0, 0, -10), 100.0, 1.25, retract_scale=retract_scale)
+    lathe.planner.add_line((5, 0, 0), 50.0)
+    positions = []
+    while not lathe.planner.status()["done"]:
+        z, revs = lathe.period()
+        positions.append((z, revs * direction))
+        assert len(positions) < 20000
+    z, revs = np.array(positions).T
+    assert -11.5 < z.min() < -10.0
+    inside = z < -0.5
+    assert np.ptp(-z[inside] - 1.25 * revs[inside]) < 0.05
+    acceleration = np.diff(z, 2) / DT**2
+    assert np.abs(acceleration).max() <= 500.001
+    assert lathe.planner.status()["pos"][:3] == [5.0, 0.0, 0.0]
+
+
+def test_an_abort_stops_a_tap():
+    lathe = ReversingSpindle(5.0, 50.0)
+    lathe.planner.add_tap((0, 0, -10), 100.0, 1.25)
+    while lathe.period()[0] > -5.0:
+        pass
+    lathe.planner.abort()
+    for _ in range(100):
+        z, _ = lathe.period()
+    assert lathe.planner.status()["done"]
+    assert z == pytest.approx(-5.0, abs=0.1)
