@@ -11,7 +11,9 @@ from importlib import import_module
 
 from hal.components.declare import DECLARED
 
-GROUPS = ("logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "stepgen")
+GROUPS = (
+    "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "stepgen", "control", "encoders", "pulses",
+)  # fmt: skip
 MODULES = {
     "threads": ("threads", "load"),
     "sampler": ("fifo", "load_sampler"),

@@ -18,17 +18,21 @@ STRUCT = re.compile(r"^cdef struct (\w+):\n((?:    .*\n)+)", re.M)
 DECLARE = re.compile(r'^\s*declare\(f?"(\w+)".*?sizeof\((\w+)\)', re.M | re.S)
 
 
-def structs() -> dict[str, list[tuple[str, str]]]:
-    """By struct: (member, length or "") of the pins it begins with."""
+def structs() -> dict[str, list[tuple[str, int]]]:
+    """By struct: (member, length or 0) of the pins it begins with."""
     found = {}
     for path in FOLDER.glob("*.pyx"):
-        for name, body in STRUCT.findall(path.read_text()):
+        text = path.read_text()
+        lengths = dict(re.findall(r"^    ([A-Z_]+) = (\d+)$", text, re.M))
+        for name, body in STRUCT.findall(text):
             members = []
             for line in body.splitlines():
                 kind, _, rest = line.strip().partition(" ")
                 if kind != "hal_pin":
                     break
-                members += [re.fullmatch(r"(\w+)(?:\[(\w+)\])?", part.strip()).groups("") for part in rest.split(",")]
+                for part in rest.partition("#")[0].split(","):
+                    member, _, length = part.strip().rstrip("]").partition("[")
+                    members.append((member, int(lengths.get(length, length or "0"))))
             found[f"{path.stem}.{name}"] = members
     return found
 
@@ -56,16 +60,16 @@ def test_the_table_names_the_members_of_the_struct_in_order(name: str) -> None:
     struct = struct_of(declaration)
     assert struct is not None
     members = []
+    spelled_out = all(entry.count == 1 for entry in declaration.entries)
     for member, length in structs()[struct]:
-        spelled_out = length.isdigit() and sum(entry.count for entry in declaration.entries) == len(declaration.entries)
-        members += [member.strip("_")] * (int(length) if spelled_out else 1)
+        members += [member] * (length if spelled_out and length else 1)
     assert [plain(entry.name) for entry in declaration.entries] == [plain(member) for member in members]
 
 
 @pytest.mark.parametrize("name", sorted(DECLARED))
 def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
     declaration = DECLARED[name]
-    words = [f"{declaration.counted_by}=2,3"] if declaration.sizes else [f"{declaration.counted_by}=2"]
+    words = [f"{declaration.counted_by}=2,1"] if declaration.sizes else [f"{declaration.counted_by}=2"]
     host.load("threads", ["name1=t", "period1=100000"])
     host.load(name, words)
     functions = [funct.name for funct in host.hal.segment.functs()]
