@@ -157,7 +157,7 @@ def test_clients_of_linuxcncrsh_do_not_disturb_each_other(mill):
         good.take_control()
         assert good.ask("get estop") == "ESTOP ON"
         assert good.ask("set estop off") == "SET ESTOP ACK"
-        assert good.ask("get estop") == "ESTOP OFF"
+        wait_until(lambda: good.ask("get estop") == "ESTOP OFF", "E-stop reset")
 
 
 def test_a_client_that_dies_in_the_middle_of_a_line_gives_no_order(mill):

