@@ -61,6 +61,7 @@ class Server:
         self._connections: dict[Connection, None] = {}
         self._followed: set[Connection] = set()
         self._stopping = False
+        self._next_check = host_now() + _CHECK_PERIOD
         self._shelf = Shelf(config, process)
         try:
             if not self._shelf.buffers:
@@ -109,21 +110,31 @@ class Server:
 
     def run(self) -> None:
         """Serve until ``stop``."""
-        next_check = host_now() + _CHECK_PERIOD
         while not self._stopping:
-            due = min([connection.due for connection in self._followed], default=_NEVER)
-            timeout = min(due, next_check) - host_now()
-            for fd, events in self._epoll.poll(max(timeout, 0.0)):
-                owner = self._watched.get(fd)
-                if owner is not None:
-                    owner.ready(events)
-            now = host_now()
-            if self._followed:
-                self._go_on(now)
-            if now >= next_check:
-                next_check = now + _CHECK_PERIOD
-                for connection in list(self._connections):
-                    connection.check(now)
+            self.step(_CHECK_PERIOD)
+
+    def step(self, seconds: float) -> None:
+        """Wait at most that long for something to do, and do it."""
+        due = min([connection.due for connection in self._followed], default=_NEVER)
+        timeout = min(due - host_now(), seconds)
+        for fd, events in self._epoll.poll(max(timeout, 0.0)):
+            owner = self._watched.get(fd)
+            if owner is not None:
+                owner.ready(events)
+        if self._followed:
+            self._go_on(host_now())
+        if host_now() >= self._next_check:
+            self._check(host_now())
+
+    def _check(self, now: float) -> None:
+        self._next_check = now + _CHECK_PERIOD
+        for connection in list(self._connections):
+            connection.check(now)
+
+    @property
+    def connection_count(self) -> int:
+        """How many clients are connected by TCP or STCP."""
+        return len(self._connections)
 
     def _go_on(self, now: float) -> None:
         for connection in list(self._followed):

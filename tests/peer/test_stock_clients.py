@@ -37,7 +37,7 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 @pytest.fixture
 def stock(server: Server) -> StockClient:
-    return StockClient(server)
+    return StockClient(server.folder, server.file)
 
 
 @pytest.fixture

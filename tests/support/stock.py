@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.nml_server import Server, remote_text
+from tests.support.nml_server import remote_text
 
 PYTHON = Path("/usr/bin/python3")
 MODULE_FOUND = any(Path("/usr/lib/python3/dist-packages").glob("linuxcnc*.so"))
@@ -29,12 +29,12 @@ out = []
 class StockClient:
     """Runs scripts for the stock module; a script puts what it finds into the list ``out``."""
 
-    def __init__(self, server: Server) -> None:
-        self.home = server.folder / "home"
+    def __init__(self, folder: Path, nml_file: Path) -> None:
+        self.home = folder / "home"
         self.home.mkdir(exist_ok=True)
         (self.home / ".tool.mmap").write_bytes(bytes(TOOL_MAP_BYTES))
-        self.file = server.folder / "stock.nml"
-        self.file.write_text(stock_text(remote_text(server.file.read_text())))
+        self.file = folder / "stock.nml"
+        self.file.write_text(stock_text(remote_text(nml_file.read_text())))
 
     def environment(self) -> dict[str, str]:
         """For programs that must not meet the project's own modules."""
