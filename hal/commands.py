@@ -76,7 +76,9 @@ def run_loadusr(session: Session, args: list[str]) -> None:
     """Start a program. -W waits for its component (-n names it), -w for its end; -i ignores its exit status."""
     _refuse_locked(session)
     session.hal.segment.skip_ids(2)
-    loadusr.load(session.hal, args)
+    pid = loadusr.load(session.hal, args)
+    if pid:
+        session.programs.append(pid)
 
 
 def _refuse_locked(session: Session) -> None:

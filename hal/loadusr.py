@@ -11,7 +11,7 @@ from pathlib import Path
 from hal._shm import USER
 from hal.core import Hal
 from hal.finder import program
-from hal.process import alive
+from hal.process import alive, start_time
 from nml import clock
 from nml.errors import HalError
 
@@ -53,8 +53,8 @@ def parse(words: list[str]) -> Request:
     return request
 
 
-def load(hal: Hal, words: list[str]) -> None:
-    """Start a program, and wait as the flags say; HalError where it fails."""
+def load(hal: Hal, words: list[str]) -> int:
+    """Start a program, and wait as the flags say; its process number, 0 when it has ended. HalError where it fails."""
     request = parse(words)
     sys.stdout.flush()
     command = program(request.command[0]) + request.command[1:]
@@ -65,6 +65,8 @@ def load(hal: Hal, words: list[str]) -> None:
         status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
         if status != 0 and not request.ignore_status:
             raise HalError(f"program '{request.command[0]}' failed, returned {status}")
+        return 0
+    return pid
 
 
 def _wait_ready(hal: Hal, request: Request, pid: int) -> None:
@@ -105,6 +107,14 @@ def unload(hal: Hal, name: str) -> None:
             _reap_children()
             clock.host_sleep(POLL_SECONDS)
     hal.reap()
+
+
+def end_programs(pids: list[int]) -> None:
+    """SIGTERM to programs of this session that are no components, such as screens."""
+    _reap_children()
+    for pid in pids:
+        if start_time(pid):
+            os.kill(pid, signal.SIGTERM)
 
 
 def _reap_children() -> None:

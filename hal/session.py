@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TextIO
 
-from hal import commands
+from hal import commands, loadusr
 from hal.client import HostClient
 from hal.core import Hal, suggest
 from hal.halfile import logical_lines, substitute, words
@@ -31,6 +31,7 @@ class Session:
         self.verbosity = 1  # 0 nothing, 1 errors, 2 results too
         self.echo = False
         self.errors = 0
+        self.programs: list[int] = []  # started by loadusr and not waited for
         self.place = Place("<commandline>")
         self.comp = self.hal.add_component(f"halcmd{os.getpid()}")
         self.comp.ready = True
@@ -128,6 +129,7 @@ class Session:
         self.hal.segment.locks = 0
         self.hal.halt_threads()
         commands.unload_all(self)
+        loadusr.end_programs(self.programs)
 
 
 def library_dirs() -> list[Path]:

@@ -12,7 +12,8 @@ from importlib import import_module
 from hal.components.declare import DECLARED
 
 GROUPS = (
-    "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "stepgen", "control", "encoders", "pulses",
+    "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "control", "stepgen", "encoders",
+    "pulses",
 )  # fmt: skip
 MODULES = {
     "threads": ("threads", "load"),

@@ -126,7 +126,8 @@ class Declaration:
             count = (counts[0] or self.default_count) if len(counts) == 1 else 0
         if count < 1 or (self.most is not None and count > self.most):
             most = "" if self.most is None else f" to {self.most}"
-            raise HalError(f"{self.name}: {self.counted_by}={args.get(self.counted_by, '')}: from 1{most} would be right")
+            given = args.get(self.counted_by, "")
+            raise HalError(f"{self.name}: {self.counted_by}={given}: from 1{most} would be right")
         return [f"{self.prefix}.{i}" for i in range(count)]
 
     def _personalities(self, args: dict[str, str]) -> list[int]:
