@@ -14,6 +14,7 @@ from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_SIDE_OFF, CANON_UNITS_INCHES, CANON_XYZ
 from rs274ngc.canon cimport Canon
 from rs274ngc.codes cimport check, enhance, run
+from rs274ngc.compensation cimport drop
 from rs274ngc.flow cimport Flow
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
@@ -155,6 +156,7 @@ cdef class Interpreter:
         """After a program or an abort: no open calls, no half-read line."""
         cdef State s = self.state
         self.unwind()
+        drop(s)
         s.frame.labels.clear()
         s.raw_size = 0
         s.raw[0] = 0
@@ -172,8 +174,6 @@ cdef class Interpreter:
         cdef State s = self.state
         self.unwind()
         s.waiting = 0
-        s.comp_side = SIDE_OFF
-        s.comp_queue = None
         self.close()
         self.reset()
 

@@ -215,7 +215,10 @@ cdef int program_end(State s, Block* b, int code) except -1:
     """M2, M30: back to the modes that every program may count on"""
     cdef int n
     flush(s)
-    s.comp_side = SIDE_OFF
+    if s.comp_side != SIDE_OFF:
+        s.comp_side = SIDE_OFF
+        s.pos[0], s.pos[1], s.pos[2] = s.comp_x, s.comp_y, s.comp_z
+    s.arc_not_allowed = False
     change_origin(s, 1)
     if s.plane != CANON_PLANE_XY:
         s.plane = CANON_PLANE_XY

@@ -69,6 +69,7 @@ cdef int straight(State s, Block* b, int code) except -1:
             return 0
     if s.comp_side != SIDE_OFF and s.comp_radius > 0.0:
         return compensated_straight(s, b, code, end)
+    s.arc_not_allowed = False
     if code == 0:
         traverse(s, end)
     else:
@@ -108,6 +109,8 @@ cdef int arc(State s, Block* b, int code) except -1:
     cdef int* axes
     if s.plane != XY and s.plane != XZ and s.plane != YZ:
         return fail(s, "Cannot do an arc in planes G17.1, G18.1, or G19.1", b.g_at[G_MOTION_GROUP])
+    if s.arc_not_allowed:
+        return fail(s, "The move just after exiting cutter compensation mode must be straight, not an arc", b.g_at[G_MOTION_GROUP])
     check_arc_words(s, b)
     need_feed(s, b, "Cannot make arc with zero feed rate", "F word missing with inverse time arc move")
     if s.feed_mode == 950 and s.speed[s.active_spindle] == 0.0:

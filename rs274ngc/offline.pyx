@@ -12,12 +12,13 @@ from rs274ngc.canon import (
 )
 
 cdef double MM_PER_INCH = 25.4
+cdef double INCHES_PER_MM = 0.03937007874016    # LinuxCNC's figure for its stand-alone machine, so that results agree
 
 
 cdef class OfflineCanon(Canon):
     """Keeps position, offsets, tools, spindles and modes; prints nothing and waits for nobody."""
 
-    def __init__(self, double length_units=1.0 / 25.4, double angle_units=1.0, tools=()):
+    def __init__(self, double length_units=INCHES_PER_MM, double angle_units=1.0, tools=()):
         """``tools``: the entries of the tool table, in its order; units per millimetre and per degree."""
         cdef int k
         self.length_units = length_units

@@ -582,8 +582,6 @@ cdef int read_word(State s, Block* b, int word, int* at, int start) except -1:
     else:
         read_value(s, at, &value)
     if value < 0.0:
-        if word == W_D:
-            return fail(s, "Negative d word tool radius index used", start)
         if word == W_F:
             return fail(s, "Negative f word used", start)
         if word == W_H:
