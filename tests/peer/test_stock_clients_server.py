@@ -1,0 +1,115 @@
+"""The other way round: our ``linuxcnc`` module reads and commands a machine run by Debian's LinuxCNC, through its server."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.support.stock_machine import needs_stock_machine, session
+
+pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
+
+DRIVE = """
+import linuxcnc, subprocess
+linuxcnc.nmlfile = "client.nml"
+s = linuxcnc.stat(); c = linuxcnc.command(); e = linuxcnc.error_channel()
+def do(name, *args):
+    getattr(c, name)(*args)
+    result = c.wait_complete(20)
+    s.poll()
+    return result
+def until(condition, seconds=20):
+    end = time.monotonic() + seconds
+    s.poll()
+    while not condition():
+        assert time.monotonic() < end, 'timeout'
+        time.sleep(0.01)
+        s.poll()
+def ready():
+    do("state", linuxcnc.STATE_ESTOP_RESET); do("state", linuxcnc.STATE_ON)
+    do("home", -1); until(lambda: all(s.homed[:3]))
+"""
+
+COMPARE = """
+stock = '''
+import json, linuxcnc
+linuxcnc.nmlfile = "client.nml"
+s = linuxcnc.stat(); s.poll()
+names = [n for n in dir(s) if not n.startswith("_") and not callable(getattr(s, n)) and n != "tool_table"]
+print(json.dumps({n: getattr(s, n) for n in names}))
+'''
+open(".tool.mmap", "wb").write(bytes(16 + 1001 * 112))
+ours = sys.modules["linuxcnc"]
+theirs = json.loads(subprocess.run(["/usr/bin/python3", "-c", stock], capture_output=True, check=True, text=True).stdout)
+s.poll()
+out.append(theirs)
+out.append(json.loads(json.dumps({name: getattr(s, name) for name in theirs})))
+"""
+
+
+def test_our_module_switches_on_homes_and_moves_a_stock_machine() -> None:
+    state, homed, moved, position, jogged, at_rest, failed, message = session(
+        DRIVE
+        + """
+until(lambda: s.task_state == linuxcnc.STATE_ESTOP)
+out.append([s.task_state, do("state", linuxcnc.STATE_ESTOP_RESET), do("state", linuxcnc.STATE_ON), s.task_state])
+do("home", -1); until(lambda: all(s.homed[:3])); out.append(s.homed[:4])
+do("mode", linuxcnc.MODE_MDI)
+out.append(do("mdi", "G21 G90 G0 X5 Y4 Z-3")); out.append(s.position[:3])
+do("mode", linuxcnc.MODE_MANUAL); do("teleop_enable", 0)
+c.jog(linuxcnc.JOG_CONTINUOUS, True, 0, 5.0); until(lambda: s.joint_position[0] > 6)
+out.append(s.joint_position[0])
+c.jog(linuxcnc.JOG_STOP, True, 0); until(lambda: s.inpos); time.sleep(0.3); s.poll(); at = s.joint_position[0]
+time.sleep(0.2); s.poll(); out.append(s.joint_position[0] == at)
+do("mode", linuxcnc.MODE_MDI)
+out.append(do("mdi", "G1 bad")); out.append(e.poll())
+"""
+    )
+    assert state == [1, 1, 1, 4]
+    assert homed == [1, 1, 1, 0]
+    assert moved == 1
+    assert position == pytest.approx([5.0, 4.0, -3.0])
+    assert jogged > 6.0
+    assert at_rest
+    assert failed == 3
+    assert message == [11, "(the server did not send the text of this message)"]
+
+
+def test_our_module_runs_a_program_on_a_stock_machine() -> None:
+    done, file, position = session(
+        DRIVE
+        + """
+open("part.ngc", "w").write("G21 G90 F2000\\nG0 X0 Y0\\nG1 X5\\nG2 X10 Y5 I0 J5\\nM2\\n")
+ready(); do("mode", linuxcnc.MODE_AUTO); do("program_open", os.path.abspath("part.ngc"))
+c.auto(linuxcnc.AUTO_RUN, 0); until(lambda: s.interp_state != linuxcnc.INTERP_IDLE)
+until(lambda: s.interp_state == linuxcnc.INTERP_IDLE)
+out.append(c.wait_complete(10)); out.append(os.path.basename(s.file)); s.poll(); out.append(s.position[:3])
+"""
+    )
+    assert done == 1
+    assert file == "part.ngc"
+    assert position == pytest.approx([10.0, 5.0, 0.0])
+
+
+def test_our_module_sees_what_the_stock_module_sees() -> None:
+    theirs, ours = session(DRIVE + "ready(); do('mode', linuxcnc.MODE_MDI); do('mdi', 'G0 X1 Y2')\n" + COMPARE)
+    differing = {name: (value, ours[name]) for name, value in theirs.items() if not same(value, ours[name])}
+    assert not differing
+
+
+def same(stock: Any, ours: Any) -> bool:
+    """Equal, where our dictionaries may have more."""
+    if isinstance(stock, dict):
+        return all(same(value, ours[key]) for key, value in stock.items())
+    if isinstance(stock, list):
+        return len(stock) == len(ours) and all(map(same, stock, ours))
+    return bool(stock == ours)
+
+
+@pytest.mark.parametrize("options", ["POLL", "sub=0.05"])
+def test_reads_that_do_not_wait_work_with_the_stock_server(options: str) -> None:
+    before, after = session(
+        DRIVE + "until(lambda: s.task_state == 1); out.append(s.task_state); ready(); out.append(s.task_state)", options
+    )
+    assert (before, after) == (1, 4)

@@ -1,0 +1,167 @@
+"""A simulated mill run by Debian's LinuxCNC, away from everything: own network, shared memory, processes and /tmp.
+
+``session`` starts it as an ordinary user (it refuses to run as root) together with a script for our Python, which is the only
+program that can reach it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pwd
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.nml_server import SOURCE, remote_text
+
+USER = next((name for name in ("lcnc", "nobody") if name in {entry.pw_name for entry in pwd.getpwall()}), None)
+PORT = 5005
+
+INI = """\
+[EMC]
+VERSION = 1.1
+MACHINE = stock
+DEBUG = 0
+NML_FILE = {folder}/server.nml
+[DISPLAY]
+DISPLAY = {folder}/display
+[TASK]
+TASK = milltask
+CYCLE_TIME = 0.001
+[RS274NGC]
+PARAMETER_FILE = {folder}/stock.var
+[EMCMOT]
+EMCMOT = motmod
+COMM_TIMEOUT = 1.0
+SERVO_PERIOD = 1000000
+[EMCIO]
+EMCIO = io
+CYCLE_TIME = 0.1
+TOOL_TABLE = {folder}/stock.tbl
+[HAL]
+HALFILE = {folder}/stock.hal
+[TRAJ]
+COORDINATES = X Y Z
+LINEAR_UNITS = mm
+ANGULAR_UNITS = degree
+DEFAULT_LINEAR_VELOCITY = 30
+MAX_LINEAR_VELOCITY = 50
+DEFAULT_LINEAR_ACCELERATION = 500
+MAX_LINEAR_ACCELERATION = 500
+[KINS]
+KINEMATICS = trivkins
+JOINTS = 3
+"""
+AXIS = """\
+[AXIS_{letter}]
+MAX_VELOCITY = 50
+MAX_ACCELERATION = 500
+MIN_LIMIT = -200
+MAX_LIMIT = 200
+[JOINT_{number}]
+TYPE = LINEAR
+HOME = 0
+MAX_VELOCITY = 50
+MAX_ACCELERATION = 500
+MIN_LIMIT = -200
+MAX_LIMIT = 200
+FERROR = 1
+MIN_FERROR = 0.5
+HOME_OFFSET = 0
+HOME_SEARCH_VEL = 0
+HOME_LATCH_VEL = 0
+HOME_SEQUENCE = {number}
+"""
+HAL = """\
+loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
+net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
+net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
+net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
+net change iocontrol.0.tool-change => iocontrol.0.tool-changed
+"""
+ENTER = """\
+ip link set lo up && mount -t tmpfs tmpfs /tmp || exit 77
+cd "$1"
+export HOME="$1" USER={user}
+su {user} -s /bin/sh -c 'exec linuxcnc machine.ini' > machine.log 2>&1 &
+"$2" "$3" > client.log 2>&1
+status=$?
+echo over > over
+wait
+exit $status
+"""
+DISPLAY = "#!/bin/sh\nwhile [ ! -e over ]; do sleep 0.1; done\n"
+
+WAIT_FOR_SERVER = f"""
+import json, os, socket, sys, time
+sys.path.insert(0, {str(SOURCE)!r})
+end = time.monotonic() + 60
+while socket.socket().connect_ex(("127.0.0.1", {PORT})):
+    assert time.monotonic() < end, "the stock server does not listen"
+    time.sleep(0.1)
+out = []
+"""
+
+
+def _reason_to_skip() -> str | None:
+    if not Path("/usr/bin/milltask").exists():
+        return "Debian's LinuxCNC is not installed"
+    if os.getuid() != 0 or USER is None:
+        return "needs root, to run LinuxCNC as another user in namespaces of its own"
+    probe = ["unshare", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "ip", "link", "set", "lo", "up"]
+    try:
+        allowed = subprocess.run(probe, capture_output=True).returncode == 0
+    except OSError:
+        allowed = False
+    return None if allowed else "namespaces are not allowed here"
+
+
+_REASON = _reason_to_skip()
+needs_stock_machine = pytest.mark.skipif(_REASON is not None, reason=_REASON or "")
+
+
+def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]:
+    """Run ``script`` with our Python beside a stock machine: what it put into the list ``out``."""
+    folder = Path(tempfile.mkdtemp(prefix="pyemc-stock-", dir="/var/tmp"))
+    try:
+        _prepare(folder, script, options)
+        command = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
+        command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
+        process = subprocess.run(command, timeout=seconds)
+        logs = "".join((folder / name).read_text(errors="replace")[-3000:] for name in ("machine.log", "client.log"))
+        assert process.returncode == 0, logs
+        return json.loads((folder / "out.json").read_text())
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _prepare(folder: Path, script: str, options: str) -> None:
+    nml = Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()
+    axes = "".join(AXIS.format(letter=letter, number=number) for number, letter in enumerate("XYZ"))
+    files = {
+        "machine.ini": INI.format(folder=folder) + axes,
+        "stock.hal": HAL,
+        "stock.tbl": "T1 P1 Z1.5 D3\n",
+        "stock.var": "",
+        "server.nml": nml,
+        "client.nml": remote_text(nml, options),
+        "display": DISPLAY,
+        "client.py": f"{WAIT_FOR_SERVER}{script}\nopen('out.json', 'w').write(json.dumps(out))\n",
+    }
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    (folder / "display").chmod(0o755)
+    for path in (folder, *folder.iterdir()):
+        shutil.chown(path, USER)
+    folder.chmod(0o755)
