@@ -28,7 +28,7 @@ from rs274ngc.offsets cimport (
 )
 from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_point, quadratic_spline
 from rs274ngc.state cimport State, fail, fail_word
-from rs274ngc.threads cimport check_threading, rigid_tap, spindle_feed, threading_cycle
+from rs274ngc.threads cimport check_g76, check_threading, rigid_tap, spindle_feed, threading_cycle
 from rs274ngc.tools cimport change_tool, declare_tool, select_tool
 
 TABLE = []
@@ -95,7 +95,7 @@ g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets")
 g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket")
 g(73, 1, "LQR", canned_cycle, "Drilling cycle with chip breaking", NULL, AXES_NEEDED)
 g(74, 1, "LPR$", canned_cycle, "Left-hand tapping cycle", NULL, AXES_NEEDED)
-g(76, 1, "EHIJKLPQR$", threading_cycle, "Threading cycle")
+g(76, 1, "EHIJKLPQR$", threading_cycle, "Threading cycle", check_g76, AXES_NEEDED)
 g(80, 1, "", cancel_motion, "Cancel the motion mode")
 g(81, 1, "LR", canned_cycle, "Drilling cycle", NULL, AXES_NEEDED)
 g(82, 1, "LPR", canned_cycle, "Drilling cycle with dwell", NULL, AXES_NEEDED)
