@@ -89,9 +89,7 @@ def _session(session: Session, options: halcmd.Options, interactive: str) -> int
 
 def _run_file(session: Session, options: halcmd.Options) -> int:
     if options.rest[0].endswith(".tcl"):
-        from hal.haltcl import run_file
-
-        return run_file(session, options.rest[0], options.rest[1:])
+        return 0 if session.run_file(options.rest[0], options.rest[1:]) else halcmd.FAILED
     return halcmd.run(options, session)
 
 

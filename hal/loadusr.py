@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 from hal._shm import USER
 from hal.core import Hal
 from hal.finder import program
-from hal.process import alive, start_time
+from hal.process import alive
 from nml import clock
 from nml.errors import HalError
 
@@ -111,10 +112,10 @@ def unload(hal: Hal, name: str) -> None:
 
 def end_programs(pids: list[int]) -> None:
     """SIGTERM to programs of this session that are no components, such as screens."""
-    _reap_children()
     for pid in pids:
-        if start_time(pid):
-            os.kill(pid, signal.SIGTERM)
+        with contextlib.suppress(ChildProcessError):  # it ended, and its number may be another's by now
+            if os.waitpid(pid, os.WNOHANG) == (0, 0):
+                os.kill(pid, signal.SIGTERM)
 
 
 def _reap_children() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -51,8 +52,12 @@ class Session:
 
     # ---- where commands come from ----
 
-    def run_file(self, path: Path | str) -> bool:
-        """All of a file; False where a command failed. ConfigError if it cannot be read."""
+    def run_file(self, path: Path | str, arguments: Sequence[str] = ()) -> bool:
+        """All of a HAL or Tcl file; False where a command failed. ConfigError if it cannot be read."""
+        if str(path).endswith(".tcl"):
+            from hal.haltcl import run_file
+
+            return run_file(self, str(path), list(arguments)) == 0
         try:
             with open(path, encoding="utf-8", errors="surrogateescape") as file:
                 return self.run_lines(file, str(path))
@@ -134,7 +139,7 @@ class Session:
 
 def library_dirs() -> list[Path]:
     """Folders of HAL files that ``LIB:`` names and that are looked through last: HALLIB_PATH, ours, LinuxCNC's."""
-    ours = Path(__file__).resolve().parent.parent / "configs" / "hallib"
+    ours = Path(__file__).resolve().parent / "hallib"
     given = [Path(part) for part in os.environ.get("HALLIB_PATH", "").split(os.pathsep) if part and part != "."]
     return [path for path in (*given, ours, Path("/usr/share/linuxcnc/hallib")) if path.is_dir()]
 
