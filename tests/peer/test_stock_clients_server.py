@@ -1,4 +1,4 @@
-"""The other way round: our ``linuxcnc`` module reads and commands a machine run by Debian's LinuxCNC, through its server."""
+"""The other way round: our ``linuxcnc`` module reads and commands a machine of Debian's LinuxCNC through its server."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ names = [n for n in dir(s) if not n.startswith("_") and not callable(getattr(s, 
 print(json.dumps({n: getattr(s, n) for n in names}))
 '''
 open(".tool.mmap", "wb").write(bytes(16 + 1001 * 112))
-ours = sys.modules["linuxcnc"]
-theirs = json.loads(subprocess.run(["/usr/bin/python3", "-c", stock], capture_output=True, check=True, text=True).stdout)
+command = ["/usr/bin/python3", "-c", stock]
+theirs = json.loads(subprocess.run(command, capture_output=True, check=True, text=True).stdout)
 s.poll()
 out.append(theirs)
 out.append(json.loads(json.dumps({name: getattr(s, name) for name in theirs})))

@@ -1,7 +1,7 @@
 """A simulated mill run by Debian's LinuxCNC, away from everything: own network, shared memory, processes and /tmp.
 
-``session`` starts it as an ordinary user (it refuses to run as root) together with a script for our Python, which is the only
-program that can reach it.
+``session`` starts it as an ordinary user (it refuses to run as root) together with a script for our Python, which is
+the only program that can reach it.
 """
 
 from __future__ import annotations
@@ -114,7 +114,8 @@ out = []
 """
 
 
-def _reason_to_skip() -> str | None:
+def reason_to_skip() -> str | None:
+    """Why a stock machine cannot run here; None if it can."""
     if not Path("/usr/bin/milltask").exists():
         return "Debian's LinuxCNC is not installed"
     if os.getuid() != 0 or USER is None:
@@ -127,7 +128,7 @@ def _reason_to_skip() -> str | None:
     return None if allowed else "namespaces are not allowed here"
 
 
-_REASON = _reason_to_skip()
+_REASON = reason_to_skip()
 needs_stock_machine = pytest.mark.skipif(_REASON is not None, reason=_REASON or "")
 
 
