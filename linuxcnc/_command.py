@@ -262,6 +262,10 @@ class command:
         """MIST_ON or MIST_OFF."""
         self._send(_choose(MIST_COMMANDS, on, "mist"))
 
+    def lube(self, on: int) -> None:
+        """Lubrication on or off; LinuxCNC's module has no method for it, halui needs one."""
+        self._send(emc.EMC_LUBE_ON if on else emc.EMC_LUBE_OFF)
+
     def load_tool_table(self, filename: str = "") -> None:
         """Read the tool table again; empty: the file of the INI."""
         self._send(emc.EMC_TOOL_LOAD_TOOL_TABLE, file=_text(filename, "load_tool_table"))

@@ -62,6 +62,8 @@ CALLS = [
     ("brake", (linuxcnc.BRAKE_RELEASE,), "EMC_SPINDLE_BRAKE_RELEASE", {"spindle": 0}),
     ("flood", (linuxcnc.FLOOD_ON,), "EMC_COOLANT_FLOOD_ON", {}),
     ("mist", (linuxcnc.MIST_OFF,), "EMC_COOLANT_MIST_OFF", {}),
+    ("lube", (1,), "EMC_LUBE_ON", {}),
+    ("lube", (0,), "EMC_LUBE_OFF", {}),
     ("load_tool_table", (), "EMC_TOOL_LOAD_TOOL_TABLE", {"file": ""}),
     ("set_digital_output", (3, 1), "EMC_MOTION_SET_DOUT", {"index": 3, "start": 1, "end": 1, "now": 1}),
     ("set_analog_output", (2, 1.5), "EMC_MOTION_SET_AOUT", {"index": 2, "start": 1.5, "end": 1.5, "now": 1}),
