@@ -42,7 +42,9 @@ class Lathe:
 
 
 @pytest.mark.parametrize(
-    "rps", [lambda t: 10.0, lambda t: 10.0 + np.sin(8 * t), lambda t: 8.0 + 2 * min(1.0, t / 3)], ids=["even", "swaying", "rising"]
+    "rps",
+    [lambda t: 10.0, lambda t: 10.0 + np.sin(8 * t), lambda t: 8.0 + 2 * min(1.0, t / 3)],
+    ids=["even", "swaying", "rising"],
 )
 def test_a_thread_keeps_its_pitch_however_the_spindle_turns(rps):
     lathe = Lathe(rps)

@@ -1,0 +1,238 @@
+"""``linuxcnc-forecast``: how long a job takes on a machine, and where it loses time, without the machine.
+
+The program goes through the interpreter and the arithmetic that task uses into the trajectory planner that motion uses,
+and the planner's servo periods are run as fast as they go: so the time is the machine's own. Talks to
+``emcmot.forecast_canon`` (the canon that feeds and steps the planner), ``rs274ngc`` and the INI file; to no bus.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from emcmot.forecast_canon import ForecastCanon
+from nml.errors import ConfigError, InterpError
+from nml.inifile import IniFile
+from rs274ngc import tooltable
+from rs274ngc.interp import INTERP_ENDFILE, INTERP_EXECUTE_FINISH, INTERP_EXIT, Interpreter
+
+AXES = "XYZABCUVW"
+UNLIMITED = 1e9
+MM = {"mm": 1.0, "metric": 1.0, "inch": 1 / 25.4, "in": 1 / 25.4, "imperial": 1 / 25.4, "1": 1.0, "1.0": 1.0}
+DEGREE = {"degree": 1.0, "deg": 1.0, "grad": 10 / 9, "gon": 10 / 9, "radian": math.pi / 180, "rad": math.pi / 180}
+SHOWN_LINES = 10
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What the forecast must know of a machine; nine axes X to W, lu or deg, and seconds."""
+
+    velocities: tuple[float, ...]
+    accelerations: tuple[float, ...]
+    start: tuple[float, ...]
+    axis_mask: int
+    period: float
+    max_linear_velocity: float
+    length_units: float
+    angle_units: float
+
+    @classmethod
+    def from_ini(cls, ini: IniFile) -> Machine:
+        """The machine of an INI file, at its home position."""
+        letters = [letter for letter in (ini.find("TRAJ", "COORDINATES") or "").upper() if letter in AXES]
+        if not letters:
+            raise ini.error("TRAJ", "COORDINATES", "missing; the letters of the axes are needed, like X Y Z")
+        velocities, accelerations, start = [UNLIMITED] * 9, [UNLIMITED] * 9, [0.0] * 9
+        for joint, letter in enumerate(letters):
+            axis, section = AXES.index(letter), f"AXIS_{letter}"
+            linear = "LINEAR" if axis < 3 or axis > 5 else "ANGULAR"
+            top_v = ini.real("TRAJ", f"MAX_{linear}_VELOCITY", UNLIMITED)
+            top_a = ini.real("TRAJ", f"MAX_{linear}_ACCELERATION", UNLIMITED)
+            velocities[axis] = ini.real(section, "MAX_VELOCITY", min(top_v, UNLIMITED))
+            accelerations[axis] = ini.real(section, "MAX_ACCELERATION", min(top_a, UNLIMITED))
+            start[axis] = ini.real(f"JOINT_{joint}", "HOME", 0.0)
+        return cls(
+            velocities=tuple(velocities),
+            accelerations=tuple(accelerations),
+            start=tuple(start),
+            axis_mask=sum(1 << AXES.index(letter) for letter in set(letters)),
+            period=ini.real("EMCMOT", "SERVO_PERIOD", 1e6, minimum=1e3) * 1e-9,
+            max_linear_velocity=ini.real("TRAJ", "MAX_LINEAR_VELOCITY", 0.0, minimum=0.0),
+            length_units=ini.choice("TRAJ", "LINEAR_UNITS", MM, 1.0),
+            angle_units=ini.choice("TRAJ", "ANGULAR_UNITS", DEGREE, 1.0),
+        )
+
+
+@dataclass
+class Forecast:
+    """What came out: seconds throughout."""
+
+    seconds: float
+    sections: list[tuple[int, str, float, float]]  # tool, operation, motion, pauses
+    line_seconds: dict[int, float]
+    line_lost: dict[int, float]
+    reasons: list[tuple[str, float]]
+    moves: int
+    positions: NDArray[np.float64]  # of every servo period, where a trace was asked for
+    lines: NDArray[np.int64]  # program line of every servo period
+    start: tuple[float, ...]
+    period: float
+
+
+def forecast(
+    ini: IniFile | None, program: Path, machine: Machine, tools: Sequence[Any] = (), tool_change_s: float = 0.0,
+    trace: bool = False,
+) -> Forecast:  # fmt: skip
+    """Run a program; InterpError where it is wrong."""
+    canon = ForecastCanon(machine, tools, tool_change_s, trace)
+    interp = Interpreter(canon, ini)
+    parameters = ini.path("RS274NGC", "PARAMETER_FILE", None) if ini else None
+    if parameters and Path(parameters).exists():
+        interp.load_parameters(str(parameters))
+    interp.init()
+    startup = ini.find("RS274NGC", "RS274NGC_STARTUP_CODE", "") if ini else ""
+    if startup:
+        interp.execute_mdi(startup)
+    interp.open(str(program))
+    while interp.read() != INTERP_ENDFILE:
+        code = interp.execute()
+        if code == INTERP_EXIT:
+            break
+        if code == INTERP_EXECUTE_FINISH:
+            canon.run_out()
+            interp.synch()
+    canon.run_out()
+    return summarise(canon, machine)
+
+
+def summarise(canon: ForecastCanon, machine: Machine) -> Forecast:
+    """Add up what the canon has counted."""
+    times, lost = canon.times()
+    lines, sections = np.array(canon.move_line), np.array(canon.move_section)
+    motion = np.bincount(sections, weights=times, minlength=len(canon.sections))
+    pauses = canon.pauses
+    positions, ids = canon.trace()
+    names = [f"{limit} of {axis}" for limit in ("acceleration", "velocity") for axis in AXES] + ["corners, curves"]
+    reasons = sorted(zip(names, canon.reasons(), strict=True), key=lambda item: -item[1])
+    return Forecast(
+        seconds=canon.periods * canon.period + sum(pauses),
+        sections=[
+            (tool, operation, float(motion[k]), pauses[k])
+            for k, (tool, operation) in enumerate(canon.sections)
+            if motion[k] or pauses[k]
+        ],
+        line_seconds=by_line(lines, times),
+        line_lost=by_line(lines, lost),
+        reasons=[(name, seconds) for name, seconds in reasons if seconds >= 0.001],
+        moves=len(lines) - 1,
+        positions=positions,
+        lines=lines[ids],
+        start=machine.start,
+        period=canon.period,
+    )
+
+
+def by_line(lines: NDArray[np.int64], seconds: NDArray[np.float64]) -> dict[int, float]:
+    """Sums of the moves of each program line, the largest first."""
+    sums = np.bincount(lines, weights=seconds) if len(lines) else np.zeros(0)
+    order = np.argsort(-sums)
+    return {int(k): float(sums[k]) for k in order if sums[k] > 0.0}
+
+
+def clock_text(seconds: float) -> str:
+    """Hours, minutes and seconds."""
+    minutes, rest = divmod(seconds, 60)
+    return f"{int(minutes // 60)}:{int(minutes % 60):02d}:{rest:06.3f}"
+
+
+def report(result: Forecast) -> str:
+    """The forecast as text."""
+    out = [f"time {clock_text(result.seconds)}  ({result.seconds:.3f} s, {result.moves} moves)", ""]
+    out += [f"{'tool':>5}  {'motion':>12}  {'pauses':>12}  operation"]
+    for tool, operation, motion, pauses in sorted(result.sections, key=lambda item: -item[2] - item[3])[:30]:
+        out.append(f"{f'T{tool}':>5}  {clock_text(motion):>12}  {clock_text(pauses):>12}  {operation}")
+    if result.reasons:
+        out += ["", "time lost against the programmed speed, by what was at its limit:"]
+        out += [f"  {seconds:10.3f} s  {name}" for name, seconds in result.reasons[:SHOWN_LINES]]
+        out += ["", "lines that lost most:"]
+        out += [
+            f"  line {line:>7}  {seconds:8.3f} s of {result.line_seconds[line]:.3f} s"
+            for line, seconds in list(result.line_lost.items())[:SHOWN_LINES]
+        ]
+    return "\n".join(out)
+
+
+def traces(result: Forecast) -> dict[str, NDArray[Any]]:
+    """Position, velocity, acceleration and jerk of every servo period by name, with time and program line."""
+    rest = np.zeros((1, len(AXES)))
+    velocity = np.diff(result.positions, axis=0, prepend=[result.start]) / result.period
+    acceleration = np.diff(velocity, axis=0, prepend=rest) / result.period
+    return {
+        "time": (np.arange(len(result.positions)) + 1) * result.period,
+        "position": result.positions,
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "jerk": np.diff(acceleration, axis=0, prepend=rest) / result.period,
+        "line": result.lines,
+    }
+
+
+def draw(traced: dict[str, NDArray[Any]], path: Path) -> None:
+    """A picture of the traces of the axes that move."""
+    try:
+        from matplotlib.figure import Figure  # type: ignore[import-not-found]
+    except ImportError:
+        raise ConfigError("pictures need the package matplotlib: pip install matplotlib") from None
+    moving = [axis for axis in range(9) if np.ptp(traced["position"][:, axis]) > 0]
+    figure = Figure(figsize=(12, 9), layout="constrained")
+    rows = figure.subplots(4, 1, sharex=True)
+    for row, name in zip(rows, ("position", "velocity", "acceleration", "jerk"), strict=True):
+        for axis in moving:
+            row.plot(traced["time"], traced[name][:, axis], label=AXES[axis], linewidth=0.8)
+        row.set_ylabel(name)
+        row.grid(alpha=0.3)
+    rows[0].legend(loc="upper right", ncols=9)
+    rows[-1].set_xlabel("time, s")
+    figure.savefig(path, dpi=100)
+
+
+def parser() -> argparse.ArgumentParser:
+    options = argparse.ArgumentParser(prog="linuxcnc-forecast", description=(__doc__ or "").split("\n\n")[0])
+    options.add_argument("ini", metavar="INI", type=Path, help="configuration of the machine")
+    options.add_argument("program", metavar="FILE", type=Path, help="G-code program")
+    options.add_argument("--toolchange", type=float, default=0.0, metavar="S", help="seconds that a tool change takes")
+    options.add_argument("--trace", type=Path, metavar="FILE.npz", help="write positions and derivatives")
+    options.add_argument("--png", type=Path, metavar="FILE.png", help="draw them")
+    return options
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command."""
+    options = parser().parse_args(arguments)
+    try:
+        ini = IniFile(options.ini)
+        table = ini.path("EMCIO", "TOOL_TABLE", None)
+        tools = tooltable.load(table) if table else []
+        traced = bool(options.trace or options.png)
+        result = forecast(ini, options.program, Machine.from_ini(ini), tools, options.toolchange, traced)
+        print(report(result))
+        if options.trace:
+            np.savez_compressed(options.trace, **traces(result))  # type: ignore[arg-type]
+        if options.png:
+            draw(traces(result), options.png)
+    except (ConfigError, InterpError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,92 @@
+"""The forecast names the time of a job, by tool and operation, and where it loses time."""
+
+import numpy as np
+import pytest
+
+from emcmot.forecast import Machine, forecast, main, traces
+from nml.errors import InterpError
+from nml.inifile import IniFile
+
+INI = """
+[EMCMOT]
+SERVO_PERIOD = 1000000
+[TRAJ]
+COORDINATES = X Y Z
+LINEAR_UNITS = mm
+MAX_LINEAR_VELOCITY = 100
+[AXIS_X]
+MAX_VELOCITY = 80
+MAX_ACCELERATION = 500
+[AXIS_Y]
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 500
+[AXIS_Z]
+MAX_VELOCITY = 50
+MAX_ACCELERATION = 200
+[JOINT_2]
+HOME = 5
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    def job(text, **options):
+        (tmp_path / "machine.ini").write_text(INI)
+        (tmp_path / "job.ngc").write_text(text)
+        ini = IniFile(tmp_path / "machine.ini")
+        return forecast(ini, tmp_path / "job.ngc", Machine.from_ini(ini), **options)
+
+    return job
+
+
+def test_a_straight_move_takes_its_length_over_the_feed_and_the_ramps(run):
+    assert run("G21 G90\nG1 X100 F3000\nM2\n").seconds == pytest.approx(100 / 50 + 50 / 500, abs=0.003)
+
+
+def test_a_rapid_runs_at_the_limit_of_its_axis(run):
+    assert run("G21 G90\nG0 X80\nM2\n").seconds == pytest.approx(80 / 80 + 80 / 500, abs=0.003)
+
+
+def test_time_is_counted_by_tool_and_operation_and_pauses_apart(run):
+    text = "G21 G90\n(first)\nG1 X50 F1200\n(second)\nG1 X0\nG4 P1.5\nM2\n"
+    result = run(text)
+    by_name = {operation: (motion, pauses) for _, operation, motion, pauses in result.sections}
+    assert by_name["first"][0] == pytest.approx(2.5, abs=0.1)
+    assert by_name["second"][0] == pytest.approx(2.5, abs=0.1)
+    assert by_name["second"][1] == 1.5
+    assert result.seconds == pytest.approx(sum(motion + pauses for motion, pauses in by_name.values()), abs=0.01)
+
+
+def test_lost_time_is_blamed_on_the_axis_and_the_line(run):
+    result = run("G21 G90 G61.1\n" + "".join(f"G1 X{k % 2} F4000\n" for k in range(1, 30)) + "M2\n")
+    assert result.reasons[0][0] == "acceleration of X"
+    assert next(iter(result.line_lost)) > 1
+
+
+def test_traces_hold_every_servo_period(run):
+    result = run("G21 G90\nG64 P0.01\nG1 X10 F3000\nG1 Y10\nM2\n", trace=True)
+    traced = traces(result)
+    assert len(traced["time"]) == round(result.seconds / 0.001)
+    assert np.allclose(traced["position"][-1, :3], [10, 10, 5])
+    assert np.abs(traced["acceleration"]).max() <= 500.001
+    assert set(traced["line"]) <= {0, 3, 4}
+
+
+def test_subprograms_arcs_and_drilling_cycles_are_run(run):
+    text = "G21 G90 F600\no1 sub\nG2 X10 Y0 I5\nG3 X0 Y0 I-5\no1 endsub\no1 call\no1 call\n"
+    text += "G81 X5 Y5 Z-5 R2 F300\nG80\nM2\n"
+    assert run(text).seconds > 4 * np.pi * 5 / 10 + 7 / 5
+
+
+def test_a_wrong_program_is_an_error_with_its_line(run):
+    with pytest.raises(InterpError, match="2"):
+        run("G21\nG1 X10 Q\nM2\n")
+
+
+def test_the_command_prints_the_time_and_writes_the_traces(tmp_path, capsys):
+    (tmp_path / "machine.ini").write_text(INI)
+    (tmp_path / "job.ngc").write_text("G21 G90\nG1 X10 F600\nM2\n")
+    assert main([str(tmp_path / "machine.ini"), str(tmp_path / "job.ngc"), "--trace", str(tmp_path / "out.npz")]) == 0
+    assert "time 0:00:01.0" in capsys.readouterr().out
+    assert np.load(tmp_path / "out.npz")["position"].shape[1] == 9
+    assert main([str(tmp_path / "none.ini"), str(tmp_path / "job.ngc")]) == 1
