@@ -1,4 +1,4 @@
-"""``import linuxcnc_util``: waits and jogs for test scripts that drive a machine, with the names of LinuxCNC's module."""
+"""``import linuxcnc_util``: waits and jogs for scripts that drive a machine, with the names of LinuxCNC's module."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ import os
 import shlex
 import shutil
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import nml
@@ -29,6 +30,14 @@ MODULES = {
 PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
+
+
+@dataclass(frozen=True, slots=True)
+class HalFile:
+    """One [HAL]HALFILE: the file, and the arguments that a Tcl file gets."""
+
+    path: Path
+    arguments: list[str]
 
 
 class Configuration:
@@ -103,20 +112,18 @@ class Configuration:
         NmlConfig.load(path)
         return path
 
-    def _hal_files(self) -> list[Path]:
+    def _hal_files(self) -> list[HalFile]:
         names = self.ini.findall("HAL", "HALFILE")
         return [self._hal_file(name, number) for number, name in enumerate(names, 1)]
 
-    def _hal_file(self, name: str, number: int) -> Path:
-        """Where a HALFILE is: beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
+    def _hal_file(self, name: str, number: int) -> HalFile:
+        """A HALFILE beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
         words = shlex.split(name)
         place = self.ini.place("HAL", "HALFILE", number)
-        if len(words) != 1:
-            raise ConfigError(f"[HAL]HALFILE = {name}: one file name is allowed", place)
         path = find_hal_file(words[0], [self.folder])
         if path is None:
             raise ConfigError(f"[HAL]HALFILE = {name}: no such file in {self.folder} or the HAL library", place)
-        return path
+        return HalFile(path, words[1:])
 
     def environment(self) -> dict[str, str]:
         """The environment of every process of this machine."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 
 from hal.session import Quit, Session
+from linuxcnc.configuration import HalFile
 from nml.errors import Place, PyemcError
 from nml.inifile import IniFile
 
@@ -21,16 +23,15 @@ class SetupSession(Session):
         raise HalFileError(f"{self.place}: {error}") from error
 
 
-def set_up(session: Session, ini: IniFile, folder: Path, files: list[Path]) -> None:
+def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -> None:
     """Run [HAL]HALFILE in order, then [HAL]HALCMD, then start the threads; relative names start at the INI file."""
     before = Path.cwd()
     os.chdir(folder)
     try:
-        for path in files:
-            try:
-                session.run_file(path)
-            except Quit:
-                continue
+        for file in files:
+            with contextlib.suppress(Quit):
+                if not session.run_file(file.path, file.arguments):
+                    raise HalFileError(f"{file.path}: failed")
         for number, line in enumerate(ini.findall("HAL", "HALCMD"), 1):
             session.place = ini.place("HAL", "HALCMD", number)
             session.run_line(line)

@@ -29,7 +29,7 @@ def test_a_display_may_be_any_executable(tmp_path, name):
 
 
 def test_hal_files_come_in_their_order(tmp_path):
-    assert [path.name for path in configuration(tmp_path).hal_files] == ["mill.hal", "spindle.hal"]
+    assert [file.path.name for file in configuration(tmp_path).hal_files] == ["mill.hal", "spindle.hal"]
 
 
 def test_the_environment_names_what_scripts_expect(tmp_path):
@@ -39,7 +39,7 @@ def test_the_environment_names_what_scripts_expect(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("entry", "value"), [("HAL.HALFILE", "a.hal b.hal"), ("HAL.HALFILE", "none.hal"), ("EMCIO.EMCIO", "noio")]
+    ("entry", "value"), [("HAL.HALFILE", "none.hal b.hal"), ("HAL.HALFILE", "none.hal"), ("EMCIO.EMCIO", "noio")]
 )
 def test_a_mistake_is_named_with_its_line(tmp_path, entry, value):
     with pytest.raises(ConfigError, match=rf"mill_mm.ini:\d+: .*{value}"):
