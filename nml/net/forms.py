@@ -16,6 +16,7 @@ from nml.codecs import Codec, codec
 from nml.config import BufferLine, Encoding
 from nml.errors import DecodeError
 from nml.message import Message, decode, registry
+from nml.net import xdr_images
 
 BARE_BUFFERS = frozenset({"emcError"})
 """Buffers whose messages are encoded without a preamble."""
@@ -65,6 +66,13 @@ class Encoded:
         return self._codec.decode(body, self._preamble)
 
 
+class Xdr(Encoded):
+    """XDR, encoded from the image without a look at its fields."""
+
+    def encode(self, image: bytearray) -> bytes:
+        return xdr_images.encode(image, self._preamble)
+
+
 class Kind(Enum):
     """How a client takes messages."""
 
@@ -80,4 +88,5 @@ def form(kind: Kind, line: BufferLine) -> Form:
     encoding = Encoding.XDR if line.encoding is Encoding.ASCII else line.encoding
     if kind is Kind.TEXT:
         encoding = Encoding.DISP
-    return Encoded(codec(encoding.value), line.name not in BARE_BUFFERS)
+    make = Xdr if encoding is Encoding.XDR else Encoded
+    return make(codec(encoding.value), line.name not in BARE_BUFFERS)

@@ -1,7 +1,7 @@
 """Channels to buffers elsewhere: what ``nml.channel.Channel`` becomes where the process line says REMOTE.
 
-A ``RemoteBuffer`` offers what ``nml._shm.Buffer`` offers, with a link instead of shared memory below, so that a program
-does not see where a buffer is. Only waiting differs: nobody wakes a remote reader, so it looks again every few
+A ``RemoteBuffer`` offers what ``nml._buffer.Buffer`` offers, with a link instead of shared memory below, so that a
+program does not see where a buffer is. Only waiting differs: nobody wakes a remote reader, so it looks again every few
 milliseconds.
 """
 
@@ -39,7 +39,7 @@ _ERRORS: dict[int, type[NmlError]] = {
 
 
 class RemoteBuffer:
-    """A buffer on the other side of a link, in the terms of ``nml._shm.Buffer``: images of messages, and numbers."""
+    """A buffer on the other side of a link, in the terms of ``nml._buffer.Buffer``: images of messages, and numbers."""
 
     def __init__(self, link: Link) -> None:
         self.link = link

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from nml import _shm
+from nml._buffer import Buffer
 from nml.channel import Channel
 from nml.codecs import Codec, codec
 from nml.config import ANY_BUFFER, BufferLine, NmlConfig, ProcessLine, ProcessType
@@ -68,7 +69,7 @@ class ServedBuffer:
             message.serial_number = number
         return bytearray(message.data)
 
-    def write(self, raw: _shm.Buffer, message: Message, only_if_read: bool) -> int:
+    def write(self, raw: Buffer, message: Message, only_if_read: bool) -> int:
         """Put a message into the buffer: its number, 0 if the last one was not read."""
         if self._stored is not None:
             return raw.write(self._stored.encode(message), False, only_if_read)
@@ -231,7 +232,7 @@ class BroadcastView(QueueView):
 
 
 _VIEWS = {_shm.SLOT: SlotView, _shm.QUEUE: QueueView, _shm.BROADCAST: BroadcastView}
-_QUESTIONS: Mapping[int, Callable[[_shm.Buffer], int]] = {
+_QUESTIONS: Mapping[int, Callable[[Buffer], int]] = {
     Request.CHECK_IF_READ: lambda raw: int(raw.was_read()),
     Request.MESSAGE_COUNT: lambda raw: raw.write_counter,
     Request.QUEUE_LENGTH: lambda raw: raw.queue_length(),
