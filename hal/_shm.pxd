@@ -139,3 +139,9 @@ cdef class Funct(Record):
 
 cdef class Thread(Record):
     cdef hal_thread* thread
+
+
+cdef class Items:
+    cdef readonly dict items
+
+    cdef Item find(self, name)

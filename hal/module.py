@@ -14,12 +14,13 @@ values, if they declared any.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from hal import _shm
-from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item, Items
 from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
+from hal.stream import Stream
 from hal.values import TYPE_NAMES
 from nml import clock
 from nml.errors import HalError
@@ -49,16 +50,13 @@ def door() -> Hal:
 
 
 class Pin:
-    """A pin or parameter of a component: what ``newpin`` and ``newparam`` return."""
+    """A pin or parameter of a component: what ``newpin`` and ``newparam`` return. ``get`` and ``set`` are native."""
 
     def __init__(self, item: Item, is_pin: bool) -> None:
         self._item = item
         self._is_pin = is_pin
         self.get: Callable[[], Any] = item.get
-
-    def set(self, value: Any) -> None:
-        """OverflowError where the value does not fit the type."""
-        self._item.set(value)
+        self.set: Callable[[Any], None] = item.set
 
     value = property(lambda self: self._item.get(), lambda self, value: self._item.set(value))
 
@@ -87,13 +85,12 @@ class Pin:
         return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._item.name} {TYPE_NAMES[self._item.type]}>"
 
 
-class component:
+class component(Items):
     """A user component. Pins are items and attributes: ``c["in"]``, ``c.out = 1`` (names with ``-``: items only)."""
 
     def __init__(self, name: str, prefix: str | None = None) -> None:
         self.__dict__["_hal"] = door()
         self.__dict__["_record"] = self._hal.add_component(name)
-        self.__dict__["_items"] = {}
         self.__dict__["_pins"] = {}
         self.__dict__["_prefix"] = name if prefix is None else prefix
 
@@ -111,18 +108,21 @@ class component:
         return self._keep(name, self._hal.add_param(self._record, f"{self._prefix}.{name}", type, dir), False)
 
     def _keep(self, name: str, item: Item, is_pin: bool) -> Pin:
-        self._items[name] = item
+        self.keep(name, item)
         pin = self._pins[name] = Pin(item, is_pin)
         return pin
 
     def getpin(self, name: str) -> Pin:
-        return self._find(self._pins, name)
+        if name not in self:
+            raise AttributeError(f"Pin '{name}' does not exist in component '{self._prefix}'")
+        pin: Pin = self._pins[name]
+        return pin
 
     getitem = getpin
 
     def getpins(self) -> dict[str, Any]:
         """All values by name."""
-        return {name: item.get() for name, item in self._items.items()}
+        return {name: item.get() for name, item in self.items.items()}
 
     def setprefix(self, prefix: str) -> None:
         """The first part of the names of pins made from now on."""
@@ -146,7 +146,7 @@ class component:
         if self._record is not None and self._record.exists:
             self._hal.remove_component(self._record)
         self.__dict__["_record"] = None
-        self._items.clear()
+        self.forget()
         self._pins.clear()
 
     @property
@@ -163,32 +163,11 @@ class component:
         if self._record is None:
             raise HalError("Invalid operation on closed HAL component")
 
-    def _find(self, table: dict[str, Any], name: str) -> Any:
-        try:
-            return table[name]
-        except KeyError:
-            raise AttributeError(f"Pin '{name}' does not exist in component '{self._prefix}'") from None
-
-    def __getitem__(self, name: str) -> Any:
-        return self._find(self._items, name).get()
-
-    def __setitem__(self, name: str, value: Any) -> None:
-        self._find(self._items, name).set(value)
-
     def __getattr__(self, name: str) -> Any:
-        return self._find(self._items, name).get()
+        return self[name]
 
     def __setattr__(self, name: str, value: Any) -> None:
-        self._find(self._items, name).set(value)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._items
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._items)
-
-    def __len__(self) -> int:
-        return len(self._items)
+        self[name] = value
 
     def __enter__(self) -> component:
         return self
@@ -197,7 +176,19 @@ class component:
         self.exit()
 
     def __repr__(self) -> str:
-        return f"<hal component {self._prefix} with {len(self._items)} pins and parameters>"
+        return f"<hal component {self._prefix} with {len(self)} pins and parameters>"
+
+
+sampler_base, streamer_base = 0x48535430, 0x48535340  # keys of the first sampler and streamer channel
+
+
+def stream(comp: component, key: int, *rest: int | str) -> Stream:
+    """A queue of samples: ``stream(comp, key, depth, types)`` makes it, ``stream(comp, key[, types])`` attaches."""
+    names = {base + n: f"{name}.{n}" for base, name in ((sampler_base, "sampler"), (streamer_base, "streamer"))
+             for n in range(8)}  # fmt: skip
+    depth = rest[0] if rest and isinstance(rest[0], int) else 0
+    types = rest[-1] if rest and isinstance(rest[-1], str) else ""
+    return Stream(names.get(key, str(key)), depth, types)
 
 
 def component_exists(name: str) -> bool:
