@@ -64,7 +64,8 @@ PYTHON
     "$VENV/bin/pip" install --quiet --disable-pip-version-check "${requirements[@]}" ||
         give_up "pip could not install the requirements; is the network there?"
     build_native
-    (cd "$ROOT" && "$VENV/bin/pip" install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .) ||
+    (cd "$ROOT" && PYEMC_BUILD_ONLY=nothing \
+        "$VENV/bin/pip" install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .) ||
         give_up "installing the project into $VENV failed"
     rm -f "$VENV"/.installed-"$extra"-*
     touch "$stamp"
