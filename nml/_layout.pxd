@@ -1,8 +1,8 @@
 """Layout of a buffer's memory and the steps that reading and writing are made of; inlined into ``_shm.pyx``.
 
-A segment is ``Head``, one ``Diag`` per possible process, then the data: four slots, or a ring of records. Positions in a
-ring count bytes for ever; where one lies is its remainder. Records start at multiples of RECORD_STEP, so that their heads
-are never split by the end of the ring.
+A segment is ``Head``, one ``Diag`` per possible process, then the data: four slots, or a ring of records. Positions in
+a ring count bytes for ever; where one lies is its remainder. Records start at multiples of RECORD_STEP, so that their
+heads are never split by the end of the ring.
 """
 
 from libc.stdint cimport int32_t, int64_t, uint32_t, uint64_t

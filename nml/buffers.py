@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from nml import _shm
+from nml._buffer import Buffer
 from nml.config import BufferLine, BufferType, Mutex, ProcessLine
 from nml.namespace import runtime_dir
 from nml.phantom import PhantomBuffer
@@ -62,12 +63,12 @@ def open_memory(line: BufferLine) -> Memory | Segment | None:
     return memory
 
 
-def attach(memory: Memory | Segment | None, line: BufferLine, process: ProcessLine) -> _shm.Buffer:
+def attach(memory: Memory | Segment | None, line: BufferLine, process: ProcessLine) -> Buffer:
     """A process's hold on the buffer in ``memory``."""
     if memory is None:
-        return cast(_shm.Buffer, PhantomBuffer(line.name, line.size))
+        return cast(Buffer, PhantomBuffer(line.name, line.size))
     assert memory.map is not None
-    return _shm.Buffer(
+    return Buffer(
         memory.map,
         timeout=process.timeout,
         lock_writes=line.mutex is not Mutex.NONE,

@@ -4,7 +4,7 @@
     while status.wait(1.0):
         print(status.peek().task.mode)
 
-Every process of a controller, and every client, talks through channels; what lies in memory is ``nml._shm``'s.
+Every process of a controller, and every client, talks through channels; how things lie in memory is ``nml._shm``'s.
 """
 
 from __future__ import annotations
@@ -162,7 +162,12 @@ class Channel:
         return self.raw.age()
 
     def clear(self) -> None:
-        """Forget every message. Numbers go on, so nobody takes a later message for an old one."""
+        """Forget every message. Numbers go on, so nobody takes a later message for an old one.
+
+        A reader may empty a queue, which it could also read; otherwise it takes the right to write.
+        """
+        if not self._may_write and not (self.line.queue and self.process.may_read):
+            raise self._not_allowed("clear")
         self.raw.clear()
 
     def diagnostics(self) -> list[dict[str, object]]:

@@ -10,6 +10,7 @@ chapter 3.21.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import socket
@@ -411,8 +412,18 @@ def _default_path() -> Path:
 
 
 def is_this_host(host: str) -> bool:
-    """Whether a B line's host is where this process runs (what AUTO asks)."""
-    return host.startswith(("localhost", "127.")) or host in (socket.gethostname(), socket.getfqdn())
+    """Whether a B line's host is where this process runs (what AUTO asks): an address that can be bound here is."""
+    if host.startswith("localhost"):
+        return True
+    try:
+        addresses = socket.getaddrinfo(host, 0, type=socket.SOCK_DGRAM)
+    except OSError:
+        return False
+    for family, kind, protocol, _, address in addresses:
+        with contextlib.suppress(OSError), socket.socket(family, kind, protocol) as probe:
+            probe.bind(address)
+            return True
+    return False
 
 
 BROADCAST_BUFFERS = frozenset({"emcError"})

@@ -18,6 +18,8 @@ from nml.errors import EncodeError
 if TYPE_CHECKING:
     from nml.message import Struct
 
+_new = object.__new__
+
 T = TypeVar("T", int, float, bool)
 S = TypeVar("S", bound="Struct")
 
@@ -270,7 +272,10 @@ class StructField(Field, Generic[S]):
     def __get__(self, view: Struct | None, owner: type | None = None) -> S | StructField[S]:
         if view is None:
             return self
-        return self.struct.view(view._buf, view._at + self.offset)
+        nested = _new(self.struct)
+        nested._buf = view._buf
+        nested._at = view._at + self.offset
+        return nested
 
     def __set__(self, view: Struct, value: S | Sequence[float]) -> None:
         put_struct(self, self.struct, view._buf, view._at + self.offset, value)

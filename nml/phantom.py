@@ -1,6 +1,6 @@
 """A buffer without memory (PHANTOM), for trying out a program alone: what is written is counted and forgotten.
 
-Has the methods of ``nml._shm.Buffer``, so that a channel need not know.
+Has the methods of ``nml._buffer.Buffer``, so that a channel need not know.
 """
 
 from __future__ import annotations

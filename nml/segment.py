@@ -17,7 +17,8 @@ from typing import Protocol
 
 import posix_ipc
 
-from nml.errors import BufferError_
+from nml import clock
+from nml.errors import BufferError_, ChannelTimeout
 from nml.namespace import shm_name
 
 
@@ -37,6 +38,9 @@ class Layout(Protocol):
     def complete(self, memory: mmap.mmap) -> bool:
         """Whether a buffer was made to its end."""
 
+
+PATIENCE = 5.0
+"""s of host time to wait for another process that is making a segment."""
 
 _SHM_FOLDER = Path("/dev/shm")
 _local: dict[int, mmap.mmap] = {}
@@ -73,6 +77,7 @@ class Segment:
         self.layout = layout
         self.shm = shm_name(f"nml.{key}")
         self.path = path
+        self.pid = os.getpid()
         self.map: mmap.mmap | None = None
         while self.map is None:
             self.fd = self._open()
@@ -94,7 +99,7 @@ class Segment:
         """Map the segment, made first if nobody else uses it; None if it was removed, or left unfinished, meanwhile."""
         if self._alone():
             self._make()
-        fcntl.flock(self.fd, fcntl.LOCK_SH)
+        self._share()
         status = os.fstat(self.fd)
         if status.st_nlink == 0 or status.st_size == 0:
             return None
@@ -116,6 +121,20 @@ class Segment:
             else:
                 self.layout.make(memory)
 
+    def _share(self) -> None:
+        """Take the lock of a user; it is free as soon as whoever makes or removes the segment is done."""
+        end = clock.host_now() + PATIENCE
+        while True:
+            try:
+                fcntl.flock(self.fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            except BlockingIOError:
+                if clock.host_now() > end:
+                    message = f"buffer {self.name}: being made by another process for {PATIENCE} s"
+                    raise ChannelTimeout(message) from None
+                clock.host_sleep(0.001)
+            else:
+                return
+
     def _alone(self) -> bool:
         try:
             fcntl.flock(self.fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -129,10 +148,16 @@ class Segment:
         return os.fstat(self.fd).st_nlink == 0
 
     def close(self) -> None:
-        """Let go; the last user removes a segment (a file stays)."""
+        """Let go; the last user removes a segment (a file stays).
+
+        A child process that inherited the segment shares its parent's locks, and leaves them alone.
+        """
         if self.map is None:
             return
         self.map = None
+        if self.pid != os.getpid():
+            os.close(self.fd)
+            return
         if self.path is None and self._alone() and not self.orphaned:
             with contextlib.suppress(posix_ipc.ExistentialError):
                 posix_ipc.unlink_shared_memory(self.shm)

@@ -256,6 +256,45 @@ def test_a_lock_held_by_another_is_waited_for_no_longer_than_the_timeout(config:
             Channel(config, "queue", process).write(EMC_NULL())
 
 
+def test_a_status_is_cleared_by_its_writers_a_queue_also_by_its_readers(config: NmlConfig):
+    with pytest.raises(BufferError_, match="b may not clear slot, its ops are R"):
+        Channel(config, "slot", "b").clear()
+    Channel(config, "queue", "a").write(text(1))
+    reader = Channel(config, "queue", "b")
+    reader.clear()
+    assert reader.queue_length() == 0
+
+
+def test_a_damaged_record_empties_the_queue_and_the_queue_goes_on(config: NmlConfig, own_namespace: str):
+    writer, reader = Channel(config, "queue", "a"), Channel(config, "queue", "b")
+    for number in range(2):
+        writer.write(text(number))
+    path = Path(f"/dev/shm/pyemc.{own_namespace}.nml.2002")
+    head = (1).to_bytes(8, "little") + (280).to_bytes(8, "little")
+    with path.open("r+b") as memory:
+        at = memory.read().index(head)
+        memory.seek(at + 8)
+        memory.write((2**40).to_bytes(8, "little"))
+    with pytest.raises(BufferError_, match="a record of 1099511627776 bytes cannot be; the queue was emptied"):
+        reader.read()
+    assert reader.read() is None
+    writer.write(text(3))
+    assert texts(reader) == ["3"]
+
+
+def test_a_child_that_inherits_a_channel_leaves_the_segment_to_its_parent(config: NmlConfig):
+    channel = Channel(config, "queue", "a")
+    pid = os.fork()
+    if pid == 0:
+        channel.close()
+        os._exit(0)
+    assert os.waitpid(pid, 0)[1] == 0
+    assert segments()
+    other = Channel(config, "queue", "b")
+    channel.write(text(1))
+    assert texts(other) == ["1"]
+
+
 def test_segments_belong_to_their_owner_and_go_with_the_last_user(config: NmlConfig, own_namespace: str):
     one, two = Channel(config, "slot", "a"), Channel(config, "slot", "b")
     assert segments() == [f"/pyemc.{own_namespace}.nml.2001"]
