@@ -86,13 +86,17 @@ class command:
         while True:
             status = self._status.peek()
             if isinstance(status, emc.EMC_STAT):
-                self._echo, self._result = status.echo_serial_number, status.status
+                self._follow(status)
             ahead = self._echo - self.serial
             if ahead > 0 or (ahead == 0 and (received or self._result != const.RCS_EXEC)):
                 return True
             left = deadline - clock.host_now()
             if left <= 0.0 or not self._status.wait(left):
                 return False
+
+    def _follow(self, status: emc.EMC_STAT) -> None:
+        """Take over what a status says of the last command."""
+        self._echo, self._result = status.echo_serial_number, status.status
 
     def wait_complete(self, timeout: float = 5.0) -> int:
         """Wait for the end of the last command: RCS_DONE, RCS_ERROR, or -1 after ``timeout`` s."""
