@@ -97,7 +97,7 @@ cdef class Canon:
         """A NURBS of control points (x, y, weight) in the XY plane, of ``order`` k, with a uniform clamped knot vector."""
 
     cpdef void nurbs_knots_feed(self, int line, list control_points, list knots, int order) except *:
-        """The same with the program's own knots (G6.2)."""
+        """The same with the program's own knots."""
 
     cpdef void straight_probe(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, int probe_type) except *:
         """Move until the probe changes (G38.n); ``probe_type`` bit 0: failing is no error (G38.3, .5), bit 1: until it opens (G38.4, .5)."""

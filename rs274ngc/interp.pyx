@@ -15,6 +15,7 @@ from rs274ngc.canon import CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_SIDE_OFF, CA
 from rs274ngc.canon cimport Canon
 from rs274ngc.codes cimport check, enhance, run
 from rs274ngc.compensation cimport drop
+from rs274ngc.context cimport restore
 from rs274ngc.flow cimport Flow
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
@@ -164,6 +165,10 @@ cdef class Interpreter:
         s.waiting = 0
         s.ended = s.must_finish = False
         self.canon.on_reset()
+
+    def restore_context(self, saved):
+        """M73: the modes of the caller, at return."""
+        restore(self.state, saved)
 
     def unwind(self):
         """Back to the main program."""

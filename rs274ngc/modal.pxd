@@ -22,9 +22,9 @@ cdef enum:
     # The order of execution: what comes first on a line happens first
     STEP_NONE = 0
     STEP_COMMENT = 1
+    STEP_SPINDLE_MODE
     STEP_FEED_MODE
     STEP_FEED
-    STEP_SPINDLE_MODE
     STEP_SPEED
     STEP_TOOL
     STEP_OUTPUTS

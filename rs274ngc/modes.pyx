@@ -3,6 +3,8 @@
 Each function is the handler of the codes that ``codes`` names with it.
 """
 
+from libc.math cimport fabs
+
 from rs274ngc.block cimport *
 from rs274ngc.canon import (
     CANON_CONTINUOUS, CANON_EXACT_PATH, CANON_EXACT_STOP, CANON_PLANE_UV, CANON_PLANE_UW, CANON_PLANE_VW, CANON_PLANE_XY,
@@ -134,7 +136,7 @@ cdef int set_spindle_mode(State s, Block* b, int code) except -1:
     """G96 with D and S, G97"""
     cdef int spindle = read_spindle(s, b, "Invalid spindle ($) number in Spindle Mode command")
     if code == 960:
-        s.css[spindle] = value_or(b, W_D, 1.0e30)
+        s.css[spindle] = fabs(value_or(b, W_D, 1.0e30))
     else:
         s.css[spindle] = 0.0
     s.canon.set_spindle_mode(spindle, s.css[spindle])

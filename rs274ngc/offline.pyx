@@ -6,6 +6,7 @@ LinuxCNC's stand-alone interpreter, machine units are inches while programs begi
 
 from libc.string cimport memcpy
 
+from rs274ngc import nurbs
 from rs274ngc.canon import (
     CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_PLANE_XY, CANON_STOPPED, CANON_UNITS_INCHES,
     CANON_UNITS_MM, Tool,
@@ -106,6 +107,10 @@ cdef class OfflineCanon(Canon):
             self.move_to(axis_end, first_end, second_end, a, b, c, u, v, w)
         else:
             self.move_to(second_end, axis_end, first_end, a, b, c, u, v, w)
+
+    cpdef void nurbs_feed(self, int line, list control_points, int order) except *:
+        for x, y in nurbs.points(control_points, order):
+            self.straight_feed(line, x, y, self.pos[2], self.pos[3], self.pos[4], self.pos[5], self.pos[6], self.pos[7], self.pos[8])
 
     cpdef void start_spindle_clockwise(self, int spindle, bint wait_for_atspeed) except *:
         self.turning[spindle] = CANON_CLOCKWISE

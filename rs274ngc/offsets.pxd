@@ -12,6 +12,7 @@ cdef int store_reference(State s, Block* b, int code) except -1
 cdef int tool_length(State s, Block* b, int code) except -1
 cdef int activate_origin(State s, int index) except -1
 cdef int change_origin(State s, int index) except -1
+cdef int shift_tool_offset(State s, tuple offset) except -1
 cdef int send_origin(State s) except -1
 cdef int send_g92(State s) except -1
 cdef int send_tool_offset(State s) except -1

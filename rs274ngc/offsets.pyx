@@ -81,6 +81,17 @@ cdef int send_tool_offset(State s) except -1:
     return 0
 
 
+cdef int shift_tool_offset(State s, tuple offset) except -1:
+    """Another tool offset, program units: the place stays, its coordinates do not."""
+    cdef double[9] point
+    cdef int k
+    to_machine(s, point)
+    for k in range(9):
+        s.tool[k] = offset[k]
+    to_program(s, point)
+    return send_tool_offset(s)
+
+
 # --- Coordinate systems
 
 cdef int activate_origin(State s, int index) except -1:
@@ -350,6 +361,8 @@ cdef int tool_length(State s, Block* b, int code) except -1:
                 s.tool[k] = value * 0.5 if k == 0 and s.diameter_mode else value
     elif code == 430:
         index = 0
+        if has(b, W_H) and b.value[W_H] < 0.0:
+            return fail_word(s, "Negative h word used", W_H)
         if has(b, W_H) and (b.value[W_H] != 0.0 or s.random_toolchanger):
             index = find_tool(s, <int>b.value[W_H], b.at[W_H])
         entry = s.canon.get_external_tool_table(index)

@@ -584,8 +584,6 @@ cdef int read_word(State s, Block* b, int word, int* at, int start) except -1:
     if value < 0.0:
         if word == W_F:
             return fail(s, "Negative f word used", start)
-        if word == W_H:
-            return fail(s, "Negative h word used", start)
         if word == W_L:
             return fail(s, "Negative l word used", start)
         if word == W_S:
