@@ -10,6 +10,7 @@ cdef class Buffer:
     cdef Diag* diag
     cdef char* data
     cdef object memory
+    cdef object keeper          # what must live as long as the memory is used
     cdef readonly str name
     cdef bint closed
     cdef bint holding
@@ -32,5 +33,8 @@ cdef class Buffer:
     cdef object take_queue(self, bint consume)
     cdef object take_observed(self)
     cdef object take_broadcast(self, bint consume)
-    cdef Record* newest(self)
+    cdef Record* newest(self) except? NULL
+    cdef object take(self, bint consume)
+    cdef object follow(self, bint consume)
+    cdef void join(self) noexcept
     cdef void account(self, bint wrote, size_t size, int32_t type_id, bint new) noexcept

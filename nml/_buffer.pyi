@@ -12,6 +12,7 @@ class Buffer:
         self,
         memory: mmap.mmap,
         *,
+        keeper: object = None,
         timeout: float = -1.0,
         lock_writes: bool = True,
         shared: bool = False,

@@ -31,6 +31,7 @@ cdef class Buffer:
         self,
         memory,
         *,
+        keeper=None,
         double timeout=-1.0,
         bint lock_writes=True,
         bint shared=False,
@@ -40,6 +41,7 @@ cdef class Buffer:
     ):
         cdef unsigned char[::1] view = memory
         self.memory = memory
+        self.keeper = keeper
         self.head = <Head*>&view[0]
         self.data = data_of(self.head)
         self.name = self.head.name.decode()
@@ -62,10 +64,12 @@ cdef class Buffer:
     @property
     def address(self) -> int:
         """Address of the head, for the C functions."""
+        self.check_open()
         return <size_t>self.head
 
     @property
     def kind(self) -> int:
+        self.check_open()
         return self.head.kind
 
     @property
@@ -77,6 +81,7 @@ cdef class Buffer:
     @property
     def longest(self) -> int:
         """Length of the longest message that fits."""
+        self.check_open()
         return self.head.capacity if self.head.kind == KIND_SLOT else self.head.capacity - sizeof(Record)
 
     cdef int check_open(self) except -1:
@@ -110,6 +115,7 @@ cdef class Buffer:
             self.holding = False
             pthread_mutex_unlock(&self.head.write_lock)
         self.memory = None
+        self.keeper = None
 
     def __dealloc__(self):
         self.let_go()
@@ -182,7 +188,7 @@ cdef class Buffer:
         """As ``read``, but a queue keeps the message and a single slot is not marked as read."""
         return self.take(False)
 
-    def take(self, bint consume):
+    cdef object take(self, bint consume):
         self.check_open()
         if self.head.kind == KIND_SLOT:
             message = self.take_slot(None)
@@ -275,7 +281,7 @@ cdef class Buffer:
             self.cursor_id = number
         return None
 
-    def join(self) -> None:
+    cdef void join(self) noexcept:
         """Broadcast: put the cursor before the first message that no reader has taken yet."""
         cdef Head* head = self.head
         cdef uint64_t first, at, number, target, length
@@ -312,7 +318,7 @@ cdef class Buffer:
         finally:
             pthread_mutex_unlock(&self.head.read_lock)
 
-    def follow(self, bint consume):
+    cdef object follow(self, bint consume):
         """Broadcast: the message after this reader's cursor."""
         cdef Head* head = self.head
         cdef uint64_t oldest, at, length
@@ -342,6 +348,7 @@ cdef class Buffer:
 
     def has_news(self) -> bool:
         """Whether ``read`` would return a message."""
+        self.check_open()
         cdef uint64_t number = nml_load(&self.head.write_counter)
         if self.head.kind == KIND_SLOT:
             return number != self.last and number > nml_load(&self.head.cleared)
@@ -353,10 +360,12 @@ cdef class Buffer:
 
     def mark_read(self) -> None:
         """Single slot: let the newest message count as read."""
+        self.check_open()
         nml_store_max(&self.head.seen, nml_load(&self.head.write_counter))
 
     def was_read(self) -> bool:
         """Whether somebody has read the newest message (queue: all of them)."""
+        self.check_open()
         if self.head.kind == KIND_QUEUE:
             return nml_load(&self.head.write_counter) == nml_load(&self.head.read_counter)
         return nml_load(&self.head.seen) >= nml_load(&self.head.write_counter)
@@ -432,8 +441,9 @@ cdef class Buffer:
         cdef Record* record = self.newest()
         return 0 if record is NULL else record.writer
 
-    cdef Record* newest(self):
+    cdef Record* newest(self) except? NULL:
         cdef Head* head = self.head
+        self.check_open()
         cdef uint64_t number = nml_load(&head.write_counter)
         return slot_of(head, number) if number and head.kind == KIND_SLOT else NULL
 

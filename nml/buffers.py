@@ -70,6 +70,7 @@ def attach(memory: Memory | Segment | None, line: BufferLine, process: ProcessLi
     assert memory.map is not None
     return Buffer(
         memory.map,
+        keeper=memory,
         timeout=process.timeout,
         lock_writes=line.mutex is not Mutex.NONE,
         shared=process.shared,

@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import weakref
-from collections.abc import Callable
 from types import TracebackType
 
 from nml.buffers import attach, open_memory
@@ -32,7 +30,6 @@ class Channel:
 
     line: BufferLine
     process: ProcessLine
-    _let_go: Callable[[], object]
 
     def __new__(cls, config: Configuration = None, buffer: str = "", process: str = "xemc") -> Channel:
         parsed = config if isinstance(config, NmlConfig) else NmlConfig.load(config)
@@ -54,7 +51,7 @@ class Channel:
             message = f"c_num {process.c_num} of {process.process}; buffer {line.name} has max_procs {line.max_procs}"
             raise ConfigError(message, process.place)
         self._memory = open_memory(line)
-        self._let_go = weakref.finalize(self, self._memory.close) if self._memory else _nothing
+        self._owner = True
         self._attach()
 
     def _attach(self) -> None:
@@ -177,7 +174,8 @@ class Channel:
     def close(self) -> None:
         """Let go of the buffer; its last user removes the segment."""
         self.raw.close()
-        self._let_go()
+        if self._owner and self._memory is not None:
+            self._memory.close()
 
     def reader(self) -> Channel:
         """Another channel in this channel's memory, with a cursor of its own in a broadcast queue; close it first."""
@@ -185,7 +183,7 @@ class Channel:
         other.line = self.line
         other.process = self.process
         other._memory = self._memory
-        other._let_go = _nothing
+        other._owner = False
         other._attach()
         return other
 
@@ -239,7 +237,3 @@ class Channel:
     def _not_allowed(self, what: str) -> BufferError_:
         line = self.process
         return BufferError_(f"{line.place}: {line.process} may not {what} {self.name}, its ops are {line.ops}")
-
-
-def _nothing() -> None:
-    """What a channel does that has no memory of its own to let go of."""

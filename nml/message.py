@@ -290,7 +290,7 @@ def decode(data: bytearray) -> Message:
     type_id = _HEADER.unpack_from(data)[0]
     cls = registry.get(type_id)
     if cls is None:
-        raise DecodeError(f"unknown message type {type_id} ({len(data)} bytes)")
+        raise DecodeError(f"unknown message type {type_id} ({len(data)} bytes); no imported module declares it")
     if len(data) < cls.SIZE:
         raise DecodeError(f"{cls.__name__} (type {type_id}) needs {cls.SIZE} bytes, here are {len(data)}")
     return cls.view(data)

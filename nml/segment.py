@@ -12,6 +12,7 @@ import fcntl
 import mmap
 import os
 import stat
+import weakref
 from pathlib import Path
 from typing import Protocol
 
@@ -77,7 +78,6 @@ class Segment:
         self.layout = layout
         self.shm = shm_name(f"nml.{key}")
         self.path = path
-        self.pid = os.getpid()
         self.map: mmap.mmap | None = None
         while self.map is None:
             self.fd = self._open()
@@ -86,6 +86,8 @@ class Segment:
             finally:
                 if self.map is None:
                     os.close(self.fd)
+        named = self.shm if path is None else None
+        self._release = weakref.finalize(self, _release, self.fd, named, os.getpid())
 
     def _open(self) -> int:
         try:
@@ -97,7 +99,7 @@ class Segment:
 
     def _attach(self) -> mmap.mmap | None:
         """Map the segment, made first if nobody else uses it; None if it was removed, or left unfinished, meanwhile."""
-        if self._alone():
+        if _lock_alone(self.fd):
             self._make()
         self._share()
         status = os.fstat(self.fd)
@@ -135,34 +137,34 @@ class Segment:
             else:
                 return
 
-    def _alone(self) -> bool:
-        try:
-            fcntl.flock(self.fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return True
-
     @property
     def orphaned(self) -> bool:
         """Whether others can no longer find this memory, because somebody cleaned up while it was in use."""
-        return os.fstat(self.fd).st_nlink == 0
+        return self.map is not None and os.fstat(self.fd).st_nlink == 0
 
     def close(self) -> None:
-        """Let go; the last user removes a segment (a file stays).
-
-        A child process that inherited the segment shares its parent's locks, and leaves them alone.
-        """
-        if self.map is None:
-            return
+        """Let go; the last user removes a segment (a file stays). Happens by itself when nobody refers to it."""
         self.map = None
-        if self.pid != os.getpid():
-            os.close(self.fd)
-            return
-        if self.path is None and self._alone() and not self.orphaned:
+        self._release()
+
+
+def _lock_alone(fd: int) -> bool:
+    """Take the exclusive lock if nobody else uses the segment."""
+    try:
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _release(fd: int, shm: str | None, pid: int) -> None:
+    """End the use of a segment; a child process that inherited it shares its parent's locks and leaves them alone."""
+    if pid == os.getpid():
+        if shm is not None and _lock_alone(fd) and os.fstat(fd).st_nlink:
             with contextlib.suppress(posix_ipc.ExistentialError):
-                posix_ipc.unlink_shared_memory(self.shm)
-        fcntl.flock(self.fd, fcntl.LOCK_UN)
-        os.close(self.fd)
+                posix_ipc.unlink_shared_memory(shm)
+        fcntl.flock(fd, fcntl.LOCK_UN)
+    os.close(fd)
 
 
 def segments() -> list[str]:

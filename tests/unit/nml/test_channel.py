@@ -282,6 +282,17 @@ def test_a_damaged_record_empties_the_queue_and_the_queue_goes_on(config: NmlCon
     assert texts(reader) == ["3"]
 
 
+def test_a_buffer_outlives_the_channel_that_it_came_from(config: NmlConfig):
+    raw = Channel(config, "queue", "a").raw
+    reader = Channel(config, "queue", "b")
+    raw.write(text(1).data)
+    assert texts(reader) == ["1"]
+    reader.close()
+    assert segments()
+    del raw, reader
+    assert segments() == []
+
+
 def test_a_child_that_inherits_a_channel_leaves_the_segment_to_its_parent(config: NmlConfig):
     channel = Channel(config, "queue", "a")
     pid = os.fork()
@@ -373,6 +384,33 @@ def test_the_age_of_a_status_tells_whether_its_writer_lives(config: NmlConfig):
     age = reader.age()
     assert age is not None
     assert age >= 0.0
+
+
+@pytest.mark.parametrize("name", ["slot", "queue", "news"])
+def test_a_closed_channel_refuses_everything(config: NmlConfig, name: str):
+    channel = Channel(config, name, "a")
+    channel.close()
+    calls = {
+        "write": lambda: channel.write(EMC_NULL()),
+        "read": channel.read,
+        "peek": channel.peek,
+        "poll_into": lambda: channel.poll_into(bytearray(8)),
+        "wait": lambda: channel.wait(0.0),
+        "has_news": channel.has_news,
+        "check_if_read": channel.check_if_read,
+        "queue_length": channel.queue_length,
+        "space": channel.space,
+        "clear": channel.clear,
+        "age": channel.age,
+        "diagnostics": channel.diagnostics,
+        "address": lambda: channel.address,
+        "write_counter": lambda: channel.write_counter,
+        "mark_read": channel.raw.mark_read,
+        "last_writer": channel.raw.last_writer,
+    }
+    for call in calls.values():
+        with pytest.raises(BufferError_, match=f"buffer {name}: the channel is closed"):
+            call()
 
 
 def test_messages_are_of_their_class(config: NmlConfig):
