@@ -174,7 +174,7 @@ class Channel:
     def close(self) -> None:
         """Let go of the buffer; its last user removes the segment."""
         self.raw.close()
-        if self._owner and self._memory is not None:
+        if self._memory is not None and self._owner:
             self._memory.close()
 
     def reader(self) -> Channel:

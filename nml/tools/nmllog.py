@@ -130,7 +130,8 @@ def _listen(channel: Channel, found: queue.SimpleQueue[list[Any]], stop: threadi
         if message is None:
             channel.wait(0.05)
         else:
-            found.put([channel.raw.last_time_ns, channel.name, channel.raw.last, raw.encode(message)])
+            written = channel.raw.last_time_ns or int(clock.host_now() * 1e9)
+            found.put([written, channel.name, channel.raw.last, raw.encode(message)])
 
 
 def _record(arguments: argparse.Namespace) -> None:

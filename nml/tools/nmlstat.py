@@ -133,8 +133,10 @@ def _newest(channel: Channel) -> Message | None:
     return newest
 
 
-def _age(channel: Channel) -> float:
-    return round(clock.host_now() - channel.raw.last_time_ns * 1e-9, 6)
+def _age(channel: Channel) -> float | None:
+    """s since the message was written; None where it came over a network, which does not say."""
+    written = channel.raw.last_time_ns
+    return round(clock.host_now() - written * 1e-9, 6) if written else None
 
 
 def _kind(line: BufferLine) -> str:
