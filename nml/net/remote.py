@@ -205,6 +205,11 @@ class RemoteChannel(Channel):
         if process.may_read:
             self.poll_into = self.raw.poll_into
 
+    def close(self) -> None:
+        """Let go of the link."""
+        self.raw.close()
+        self._let_go()
+
     @property
     def address(self) -> int:
         raise BufferError_(f"buffer {self.name} is remote: it has no address here")
@@ -214,16 +219,19 @@ class RemoteChannel(Channel):
 
 
 def open_link(line: BufferLine, process: ProcessLine) -> Link:
-    """The link that a buffer's line and a process's line ask for: TCP, else STCP, UDP or a serial line."""
-    if process.serial_port is not None or (line.serial_port is not None and line.tcp is None):
+    """The link that a buffer's line and a process's line ask for: TCP, else STCP, UDP or a serial line.
+
+    A serial port in the process's line comes first: it is this end of the cable.
+    """
+    if process.serial_port is not None:
         return SerialLink(line, process)
-    if line.tcp is not None:
-        if process.subscription != "none":
-            return SubscribedLink(line, process)
-        return PolledLink(line, process) if process.poll else TcpLink(line, process)
-    if line.stcp is not None:
-        return TextLink(line, process)
-    if line.udp is not None:
-        return UdpLink(line, process)
+    if line.tcp is not None and process.subscription != "none":
+        return SubscribedLink(line, process)
+    if line.tcp is not None and process.poll:
+        return PolledLink(line, process)
+    offered = ((line.tcp, TcpLink), (line.stcp, TextLink), (line.udp, UdpLink), (line.serial_port, SerialLink))
+    for where, kind in offered:
+        if where is not None:
+            return kind(line, process)
     message = f"buffer {line.name} has no TCP=, STCP=, UDP= or serialPortDevName=, so {process.process} cannot reach it"
     raise ConfigError(message, line.place)

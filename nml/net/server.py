@@ -1,6 +1,6 @@
 """``linuxcncsvr``: the process that offers the buffers of the NML file to remote programs.
 
-    python -m nml.net.server -ini FILE [-nml FILE] [--listen ADDRESS]
+    linuxcncsvr -ini FILE [-nml FILE] [--listen ADDRESS] [--optional] | --client-file HOST
 
 It opens, as process ``emcsvr`` of the NML file, every buffer whose B line has TCP=, STCP=, UDP= or serialPortDevName=,
 and serves them all from one thread: nothing it calls waits for a client, and a local process never waits for it. Only
@@ -24,6 +24,7 @@ from nml.clock import host_now
 from nml.config import BufferLine, NmlConfig
 from nml.errors import ConfigError, NmlError
 from nml.inifile import IniFile
+from nml.net.client_file import client_file
 from nml.net.packet_ports import SerialPort, UdpPort
 from nml.net.protocol import Session
 from nml.net.served import Shelf
@@ -226,6 +227,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("-ini", metavar="FILE", default=os.environ.get("INI_FILE_NAME"), help="INI file")
     parser.add_argument("-nml", metavar="FILE", help="NML file instead of the one that the INI file names")
     parser.add_argument("--listen", metavar="ADDRESS", help=f"address to listen on, {LOOPBACK} by default")
+    parser.add_argument("--client-file", metavar="HOST", help="print the NML file for a program on another computer")
     parser.add_argument("--optional", action="store_true", help="go on without a port that is in use")
     return parser.parse_args(argv)
 
@@ -240,6 +242,9 @@ def main(argv: list[str] | None = None) -> int:
             os.environ["INI_FILE_NAME"] = arguments.ini
             listen = listen or IniFile(arguments.ini).find("NML", "LISTEN")
         config = NmlConfig.load(arguments.nml)
+        if arguments.client_file:
+            print(client_file(config, PROCESS, arguments.client_file), end="")
+            return 0
         limits = Limits(connections=_allow_files(Limits().connections))
         server = Server(config, listen=listen or LOOPBACK, optional=arguments.optional, limits=limits)
     except (ConfigError, NmlError) as error:

@@ -279,3 +279,39 @@ def test_random_bytes_in_random_pieces_leave_the_server_well(server: Server, pie
             client.send(piece)
     client.close()
     is_well(server)
+
+
+def listening(port: int) -> set[str]:
+    """Addresses on which somebody listens at a port, as the kernel writes them."""
+    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    return {row[1].split(":")[0] for row in rows if row[3] == "0A" and int(row[1].split(":")[1], 16) == port}
+
+
+def test_only_this_host_reaches_the_server_unless_told_otherwise(tmp_path: Path) -> None:
+    port = free_port()
+    with running(tmp_path, nml_text(f"TCP={port}")):
+        assert listening(port) == {"0100007F"}
+
+
+def test_the_ini_file_opens_the_server_to_an_address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    port = free_port()
+    (tmp_path / "machine.ini").write_text("[EMC]\nNML_FILE = server.nml\n[NML]\nLISTEN = 127.0.0.2\n")
+    monkeypatch.setenv("INI_FILE_NAME", str(tmp_path / "machine.ini"))
+    with running(tmp_path, nml_text(f"TCP={port}"), host="127.0.0.2"):
+        assert listening(port) == {"0200007F"}
+
+
+def test_the_process_ends_cleanly_with_clients_connected(server: Server) -> None:
+    client = Raw(server)
+    client.name()
+    assert server.stop() == 0
+    assert client.sock.recv(1) == b""
+    client.close()
+
+
+def test_an_optional_port_that_is_busy_is_left_out(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with running(tmp_path, nml_text(f"TCP={port}"), "--optional") as one:
+            assert one.process is not None
+            assert one.process.poll() is None

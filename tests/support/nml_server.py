@@ -22,6 +22,7 @@ from nml.net import wire
 
 SOURCE = Path(__file__).parents[2]
 STARTED_WITHIN = 20.0
+LOOPBACK = "127.0.0.1"
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
@@ -31,8 +32,8 @@ def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
         return sock.getsockname()[1]
 
 
-def _tcp_accepts(port: int) -> bool:
-    with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+def _tcp_accepts(host: str, port: int) -> bool:
+    with contextlib.suppress(OSError), socket.create_connection((host, port), 1.0):
         return True
     return False
 
@@ -65,8 +66,9 @@ def remote_text(text: str, options: str = "") -> str:
 class Server:
     """``linuxcncsvr`` as a process."""
 
-    def __init__(self, folder: Path, text: str, *arguments: str) -> None:
+    def __init__(self, folder: Path, text: str, *arguments: str, host: str = LOOPBACK) -> None:
         self.folder = folder
+        self.host = host
         self.file = folder / "server.nml"
         self.file.write_text(text)
         found = re.findall(r"^B.* (S?TCP|UDP)=(\d+)", text, flags=re.MULTILINE)
@@ -81,7 +83,7 @@ class Server:
         self.process = subprocess.Popen(command, cwd=SOURCE, stderr=subprocess.PIPE, text=True)
         deadline = time.monotonic() + STARTED_WITHIN
         for kind, port in self.ports:
-            while not (_udp_answers(port) if kind == "UDP" else _tcp_accepts(port)):
+            while not (_udp_answers(port) if kind == "UDP" else _tcp_accepts(self.host, port)):
                 assert self.process.poll() is None, self.process.communicate()[1]
                 assert time.monotonic() < deadline, "the server does not listen"
                 time.sleep(0.02)
@@ -101,9 +103,9 @@ class Server:
 
 
 @contextlib.contextmanager
-def running(folder: Path, text: str, *arguments: str) -> Iterator[Server]:
+def running(folder: Path, text: str, *arguments: str, host: str = LOOPBACK) -> Iterator[Server]:
     """A server that runs during the block."""
-    server = Server(folder, text, *arguments)
+    server = Server(folder, text, *arguments, host=host)
     server.start()
     try:
         yield server

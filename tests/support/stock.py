@@ -34,7 +34,7 @@ class StockClient:
         self.home.mkdir(exist_ok=True)
         (self.home / ".tool.mmap").write_bytes(bytes(TOOL_MAP_BYTES))
         self.file = folder / "stock.nml"
-        self.file.write_text(stock_text(remote_text(nml_file.read_text())))
+        self.file.write_text(remote_text(nml_file.read_text()))
 
     def environment(self) -> dict[str, str]:
         """For programs that must not meet the project's own modules."""
@@ -57,15 +57,3 @@ class StockClient:
         text, _ = process.communicate(timeout=seconds)
         assert process.returncode == 0, f"the stock client ended with {process.returncode}"
         return json.loads(text.splitlines()[-1])
-
-
-def stock_text(text: str) -> str:
-    """An NML file without what only ours understands: buffers of our own and their options."""
-    kept = []
-    for line in text.splitlines():
-        words = line.split()
-        name = {"B": 1, "P": 2}.get(words[0] if words else "", 0)
-        if name and words[name] not in ("emcCommand", "emcStatus", "emcError", "toolCmd", "toolSts", "default"):
-            continue
-        kept.append(line.replace(" broadcast", ""))
-    return "\n".join(kept) + "\n"
