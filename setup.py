@@ -1,6 +1,7 @@
 """Build the native core: every ``.pyx`` file of the packages becomes an extension module beside it.
 
-``PYEMC_BUILD_ONLY=nml,hal`` limits the build to some packages (``nothing``: the modules are built already); ``PYEMC_DEBUG=1`` builds with bounds checks.
+``PYEMC_BUILD_ONLY=nml,hal`` limits the build to some packages (``nothing``: the modules are built already);
+``PYEMC_DEBUG=1`` builds with bounds checks.
 """
 
 import importlib
