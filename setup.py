@@ -23,7 +23,7 @@ DIRECTIVES = {
     "cdivision": True,
     "embedsignature": True,
 }
-COMPILE_ARGS = ["-O2", "-ffp-contract=off", "-fno-math-errno", "-Wno-unused-function"]
+COMPILE_ARGS = ["-O2", "-ffp-contract=off", "-fno-math-errno", "-Wno-unused-function", "-g" if DEBUG else "-g0"]
 
 
 def wanted_packages() -> tuple[str, ...]:
