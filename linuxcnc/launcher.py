@@ -86,7 +86,8 @@ def _launch(options: argparse.Namespace) -> int:
                 return 0
             return _follow_display(machine)
     except (PyemcError, ProgramError, error) as reason:
-        print(reason, file=sys.stderr)
+        if str(reason):
+            print(reason, file=sys.stderr)
         return 1
 
 

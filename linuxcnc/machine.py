@@ -22,6 +22,7 @@ from nml.channel import Channel
 from nml.errors import PyemcError
 
 START_TIMEOUT = 15.0  # host seconds until a process must be ready
+LAST_WORDS = 1.0  # host seconds before its end in which a process tells why it ends
 END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # what asks the launcher to end
 POLL = 0.002  # host seconds between looks at a condition
 
@@ -38,6 +39,7 @@ class Child:
     process: subprocess.Popen[bytes]
     log: Path
     shown: int = 0  # bytes of the log that were passed on
+    said: float = float("-inf")  # host time of the last line that was passed on
 
     def new_output(self) -> list[str]:
         """Whole lines written since the last call."""
@@ -46,7 +48,16 @@ class Child:
             data = file.read()
         end = len(data) if self.process.poll() is not None else data.rfind(b"\n") + 1
         self.shown += end
-        return [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
+        lines = [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
+        if lines:
+            self.said = clock.host_now()
+        return lines
+
+    def farewell(self) -> str:
+        """What is left to say about its end; nothing where it has just said why itself."""
+        if self.process.returncode > 0 and clock.host_now() - self.said < LAST_WORDS:
+            return ""
+        return f"{self.name} {_how_it_ended(self.process.returncode)}"
 
 
 class Machine:
@@ -163,10 +174,9 @@ class Machine:
                     self.report(line)
             return
         child = ended[0]
-        lines = child.new_output()
-        for line in lines[:-1]:
+        for line in child.new_output():
             self.report(line)
-        raise MachineError(lines[-1] if lines else f"{child.name} {_how_it_ended(child.process.returncode)}")
+        raise MachineError(child.farewell())
 
     # --- stopping --------------------------------------------------------------------------------------------------
 
