@@ -234,7 +234,7 @@ class Save:
 
     def nets(self, arrows: bool = False) -> Lines:
         yield "# nets"
-        for signal in self._linked():
+        for signal in self.segment.signals():
             yield f"newsig {signal.name} {TYPE_NAMES[signal.type]:<5}"
             for pin in signal.pins():
                 yield f"linksp {signal.name} {SIGNAL_ARROWS[pin.dir] if arrows else ''} {pin.shown}"

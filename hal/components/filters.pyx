@@ -1,6 +1,6 @@
 """Components that limit or smooth a value over time. See ``declare.py``."""
 
-from libc.math cimport fabs, sqrt
+from libc.math cimport ceil, fabs, sqrt
 from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t
 
 from hal.cell cimport hal_at as at, hal_pin
@@ -45,13 +45,18 @@ cdef struct Limit3:
     uint8_t started
 
 cdef double approach(double distance, double maxa, double dt) noexcept nogil:
-    """The highest velocity of this period after which braking by `maxa` in whole periods still ends at the distance."""
-    cdef double step = 0.5 * maxa * dt
-    cdef double v
-    if distance == 0.0:
-        return 0.0
-    v = sqrt(step * step + 2.0 * maxa * fabs(distance)) - step
-    v = min(v, fabs(distance) / dt)
+    """The highest velocity of this period after which braking by `maxa` in whole periods still ends at the distance.
+
+    Of `n` periods the first goes at v and each later one slower by `step`: n v - step n (n - 1) / 2 periods' ways in all.
+    """
+    cdef double step = maxa * dt
+    cdef double ways = fabs(distance) / dt
+    cdef double n, v
+    if ways <= step:
+        v = ways
+    else:
+        n = ceil(0.5 * (sqrt(1.0 + 8.0 * ways / step) - 1.0) - 1e-9)
+        v = ways / n + 0.5 * step * (n - 1.0)
     return -v if distance < 0.0 else v
 
 cdef double limited_velocity(Limit3* s, double target, double dt) noexcept nogil:

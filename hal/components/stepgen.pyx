@@ -124,8 +124,8 @@ cdef void make_channel(Stepgen* s, long period) noexcept nogil:
     s.position += s.rate
     if s.position >> STEP_BITS != before:
         begin_pulse(s)
-        if (s.personality & 0xFF) >= 2:
-            show_phases(s)
+    if (s.personality & 0xFF) >= 2:
+        show_phases(s)
     at(s.rawcounts).s = <int32_t>(s.position >> STEP_BITS)
 
 
@@ -213,15 +213,9 @@ cdef void update_freq(Stepgens* all_, long period) noexcept nogil:
         update_channel(all_.channel[i], period * 1e-9)
 
 
-cdef void set_up(Stepgen* s):
-    """Half a step from the edge, so that rounding is even; the phases are those of count 0."""
-    s.position = 1 << (STEP_BITS - 1)
-    if (s.personality & 0xFF) >= 2:
-        show_phases(s)
-
-
-def set_up_instance(size_t address):
-    set_up(<Stepgen*>address)
+def set_up(size_t address):
+    """Begin half a step from the edge, so that rounding is even."""
+    (<Stepgen*>address).position = 1 << (STEP_BITS - 1)
 
 
 def decode(dict args) -> list:
@@ -277,4 +271,4 @@ declare("stepgen", "Step pulses in software. step_type=0,... is 0 step/dir, 1 up
 ], {}, shared={"make-pulses": <size_t>&make_pulses, "update-freq": <size_t>&update_freq,
                "capture-position": <size_t>&capture_position},
    counted_by="step_type", sizes=True, most=MAX_CHANNELS, options=("ctrl_type", "user_step_type"), decode=decode,
-   keep_personality=True, set_up=set_up_instance)
+   keep_personality=True, set_up=set_up)

@@ -1,0 +1,108 @@
+"""Side by side with Debian's halrun: components have the same pins, and commands print the same."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.support.halsession import script
+
+PEER = shutil.which("halrun", path="/usr/bin")
+pytestmark = [
+    pytest.mark.peer,
+    pytest.mark.process,
+    pytest.mark.skipif(PEER is None, reason="/usr/bin/halrun (linuxcnc-uspace) is not installed"),
+    pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("unshare"), reason="shielding the peer needs root"),
+]
+
+COMPONENTS = """
+    abs abs_s32 and2 bitslice:personality=3 bitwise blend comp constant conv_bit_float conv_bit_s32 conv_bit_u32
+    conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32
+    counter:num_chan=1 dbounce ddt deadzone debounce:cfg=2 div2 edge encoder:num_chan=1 encoder_ratio:num_chan=1
+    estop_latch flipflop hypot ilowpass integ invert limit1 limit2 limit3 lincurve:personality=3
+    logic:personality=0x306 lowpass lut5 maj3 match8 minmax mult2 mux16 mux2 mux4 mux8 near not offset oneshot or2
+    pid:num_chan=1 pwmgen:output_type=0,1,2 sample_hold sampler:cfg=fbsu:depth=9 scale select8 siggen:num_chan=1
+    sim_encoder:num_chan=1 sim_home_switch sim_parport sim_spindle stepgen:step_type=0,1,2,5,13 streamer:cfg=fbsu:depth=9
+    sum2 supply:num_chan=1 time timedelay timedelta toggle toggle2nist tof ton tp tristate_bit tristate_float updown
+    wcomp xor2
+"""
+IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
+
+
+def peer(tmp_path: Path, text: str) -> str:
+    """What Debian's halrun prints, in namespaces of its own, as an ordinary user."""
+    path = tmp_path / "peer.hal"
+    path.write_text(text)
+    tmp_path.chmod(0o777)  # its home
+    for folder in tmp_path.parents[:2]:
+        folder.chmod(0o755)
+    command = f"cd {tmp_path} && timeout 60 {PEER} -k -f {path}"
+    shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    done = subprocess.run(
+        [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "sh", "-c", command],
+        capture_output=True, text=True, timeout=90, check=False, env={**environment, "HOME": str(tmp_path)},
+    )  # fmt: skip
+    return done.stdout
+
+
+def table(output: str) -> set[tuple[str, ...]]:
+    """(type, direction, value, name) of each pin and parameter shown."""
+    return {row for row in IDENTITY.findall(output) if not row[3].endswith((".time", ".tmax"))}
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
+    """`show` of all components, ours and the peer's."""
+    loads = "".join(f"loadrt {name.replace(':', ' ')}\n" for name in COMPONENTS.split())
+    text = f"loadrt threads\n{loads}show pin\nshow param\n"
+    folder = tmp_path_factory.mktemp("peer")
+    return script(folder, text, "-k").stdout, peer(folder, text)
+
+
+def test_every_component_has_the_peers_pins_parameters_and_defaults(both: tuple[str, str]) -> None:
+    ours, theirs = (table(output) for output in both)
+    assert theirs, "the peer did not run"
+    assert sorted(theirs - ours) == []
+    assert sorted(row for row in ours - theirs if not row[3].startswith(("conv-", "bitslice"))) == []
+
+
+COMMANDS = """loadrt threads name1=slow period1=1000000
+loadrt and2 count=2
+net foo and2.0.out => and2.1.in0 and2.1.in1
+newsig bar float
+sets bar 1.25
+newsig unsigned u32
+sets unsigned 255
+gets bar
+gets unsigned
+getp and2.0.in0
+ptype and2.0.tmax
+stype foo
+list pin and2.0
+addf and2.0 slow
+alias pin and2.0.in0 hello
+show alias
+save net
+save neta
+save netla
+save link
+save linka
+save sig
+save sigu
+save comp
+save alias
+save thread
+lock tune
+status lock
+"""
+
+
+def test_commands_print_what_the_peers_print(tmp_path: Path) -> None:
+    ours, theirs = script(tmp_path, COMMANDS, "-k").stdout, peer(tmp_path, COMMANDS)
+    assert ours.splitlines() == [line for line in theirs.splitlines() if not line.startswith("Note:")]
