@@ -8,7 +8,6 @@ from nml._layout cimport Diag, Head, Record, pthread_mutex_t
 cdef class Buffer:
     cdef Head* head
     cdef Diag* diag
-    cdef char* data
     cdef object memory
     cdef object keeper          # what must live as long as the memory is used
     cdef readonly str name
@@ -18,6 +17,7 @@ cdef class Buffer:
     cdef readonly uint64_t last     # number of the message that this channel has read or peeked last
     cdef uint64_t cursor_id
     cdef uint64_t cursor_at
+    cdef uint64_t first             # broadcast: what had been read when this reader came
     cdef bint shared
     cdef bint observe
     cdef int64_t pid
@@ -36,5 +36,6 @@ cdef class Buffer:
     cdef Record* newest(self) except? NULL
     cdef object take(self, bint consume)
     cdef object follow(self, bint consume)
-    cdef void join(self) noexcept
+    cdef void seek(self, uint64_t target) noexcept
+    cdef object damaged(self, str what)
     cdef void account(self, bint wrote, size_t size, int32_t type_id, bint new) noexcept

@@ -43,7 +43,6 @@ cdef class Buffer:
         self.memory = memory
         self.keeper = keeper
         self.head = <Head*>&view[0]
-        self.data = data_of(self.head)
         self.name = self.head.name.decode()
         self.timeout = timeout
         self.lock_writes = lock_writes
@@ -57,7 +56,8 @@ cdef class Buffer:
             strncpy(self.diag.name, encoded, sizeof(self.diag.name) - 1)
             self.diag.pid = self.pid
         if self.head.kind == KIND_BROADCAST:
-            self.join()
+            self.first = nml_load(&self.head.seen)
+            self.seek(self.first)
         elif self.head.kind == KIND_QUEUE:
             self.cursor_id = paired(&self.head.read_counter, self.head.head, &self.cursor_at)
 
@@ -222,6 +222,9 @@ cdef class Buffer:
                 return None
             slot = slot_of(head, number)
             if nml_load(&slot.id) != number:
+                if nml_load(&head.write_counter) == number:
+                    self.last = number
+                    raise self.damaged(f"message {number} is not where it should be")
                 continue
             length = min(slot.length, head.capacity)
             message = bytearray(length) if into is None else into
@@ -248,7 +251,7 @@ cdef class Buffer:
         if length > head.capacity - sizeof(Record):
             queue_forget(head)
             pthread_mutex_unlock(&head.read_lock)
-            raise BufferError_(f"buffer {self.name}: a record of {length} bytes cannot be; the queue was emptied")
+            raise self.damaged(f"a record of {length} bytes cannot be; the queue was emptied")
         self.last_time_ns = record_at(head, at).time_ns
         message = bytearray(length)
         ring_get(head, at + sizeof(Record), PyByteArray_AS_STRING(message), length)
@@ -262,7 +265,7 @@ cdef class Buffer:
         """The queue's next message after this observer's cursor, whether or not somebody has taken it meanwhile."""
         cdef Head* head = self.head
         cdef Record* record
-        cdef uint64_t number, length
+        cdef uint64_t number, length, at
         while nml_load(&head.write_counter) > self.cursor_id:
             record = record_at(head, self.cursor_at)
             length = record.length
@@ -276,44 +279,44 @@ cdef class Buffer:
                     self.cursor_at += record_size(length)
                     self.last = self.cursor_id
                     return message
-            number = paired(&head.read_counter, head.head, &self.cursor_at)
+            number = paired(&head.read_counter, head.head, &at)
+            if number <= self.cursor_id:
+                self.cursor_id = paired(&head.write_counter, head.tail, &self.cursor_at)
+                raise self.damaged(f"no record {number + 1} in the queue")
             self.missed += number - self.cursor_id
-            self.cursor_id = number
+            self.cursor_id, self.cursor_at = number, at
         return None
 
-    cdef void join(self) noexcept:
-        """Broadcast: put the cursor before the first message that no reader has taken yet."""
+    cdef void seek(self, uint64_t target) noexcept:
+        """Broadcast: put the cursor behind message ``target``, or before the oldest one that is still there."""
         cdef Head* head = self.head
-        cdef uint64_t first, at, number, target, length
+        cdef uint64_t first, at, number
+        cdef Record* record
         while True:
-            first = paired(&head.read_counter, head.head, &at)
-            number = first
-            target = nml_load(&head.seen)
+            number = first = paired(&head.read_counter, head.head, &at)
             while number < target:
-                length = record_at(head, at).length
-                if length > head.capacity:
+                record = record_at(head, at)
+                if record.id != number + 1 or record.length > head.capacity:
                     break
-                at += record_size(length)
+                at += record_size(record.length)
                 number += 1
-            nml_fence()
-            if number >= target and nml_load(&head.read_counter) == first:
+            nml_fence()  # SYNC POINT: the records were whole if none of them is dropped yet
+            if nml_load(&head.read_counter) == first:
                 self.cursor_id, self.cursor_at = number, at
                 return
 
     cdef object take_broadcast(self, bint consume):
+        cdef uint64_t taken
         if not self.shared:
             return self.follow(consume)
         self.lock(&self.head.read_lock)
         try:
-            if self.head.shared_check == self.head.shared_id and self.head.shared_id:
-                self.cursor_id, self.cursor_at = self.head.shared_id, self.head.shared_at
+            taken = max(self.head.shared_id, self.first)
+            self.seek(taken)
+            self.missed += self.cursor_id - taken
             message = self.follow(consume)
             if consume and message is not None:
-                self.head.shared_check = 0
-                nml_fence()
-                self.head.shared_at = self.cursor_at
-                self.head.shared_id = self.cursor_id
-                nml_store(&self.head.shared_check, self.cursor_id)
+                nml_store(&self.head.shared_id, self.cursor_id)
             return message
         finally:
             pthread_mutex_unlock(&self.head.read_lock)
@@ -321,6 +324,7 @@ cdef class Buffer:
     cdef object follow(self, bint consume):
         """Broadcast: the message after this reader's cursor."""
         cdef Head* head = self.head
+        cdef Record* record
         cdef uint64_t oldest, at, length
         while nml_load(&head.write_counter) > self.cursor_id:
             oldest = paired(&head.read_counter, head.head, &at)
@@ -328,23 +332,31 @@ cdef class Buffer:
                 self.missed += oldest - self.cursor_id
                 self.cursor_id, self.cursor_at = oldest, at
                 continue
-            length = record_at(head, self.cursor_at).length
-            if length > head.capacity:
-                continue
-            message = bytearray(length)
-            ring_get(head, self.cursor_at + sizeof(Record), PyByteArray_AS_STRING(message), length)
-            self.last_time_ns = record_at(head, self.cursor_at).time_ns
+            record = record_at(head, self.cursor_at)
+            length = record.length
+            whole = record.id == self.cursor_id + 1 and length <= head.capacity - sizeof(Record)
+            if whole:
+                message = bytearray(length)
+                ring_get(head, self.cursor_at + sizeof(Record), PyByteArray_AS_STRING(message), length)
+                self.last_time_ns = record.time_ns
             nml_fence()  # SYNC POINT: the record was whole if it is not dropped yet
             if nml_load(&head.read_counter) > self.cursor_id:
                 continue
+            if not whole:
+                self.cursor_id = paired(&head.write_counter, head.tail, &self.cursor_at)
+                raise self.damaged("a record is not where it should be")
+            self.last = self.cursor_id + 1
             if consume:
                 self.cursor_id += 1
                 self.cursor_at += record_size(length)
                 if not self.observe:
                     nml_store_max(&head.seen, self.cursor_id)
-            self.last = self.cursor_id
             return message
         return None
+
+    cdef object damaged(self, str what):
+        """The error for memory that no writer of ours left so."""
+        return BufferError_(f"buffer {self.name} is damaged: {what}")
 
     def has_news(self) -> bool:
         """Whether ``read`` would return a message."""
@@ -354,8 +366,8 @@ cdef class Buffer:
             return number != self.last and number > nml_load(&self.head.cleared)
         if self.head.kind == KIND_QUEUE and not self.observe:
             return number != nml_load(&self.head.read_counter)
-        if self.shared and self.head.shared_id:
-            return number > self.head.shared_id
+        if self.shared:
+            return number > max(self.head.shared_id, self.first)
         return number > self.cursor_id
 
     def mark_read(self) -> None:

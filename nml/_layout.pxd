@@ -39,8 +39,6 @@ ctypedef struct Head:
     uint64_t head[2]        # queue: where the oldest record starts, for an even and for an odd read counter
     uint64_t seen           # highest number that a reader has taken
     uint64_t shared_id      # broadcast: number of the last record taken by the readers that share one cursor
-    uint64_t shared_at      # broadcast: its end; valid when shared_check == shared_id
-    uint64_t shared_check
     pthread_mutex_t write_lock
     pthread_mutex_t read_lock
 

@@ -23,7 +23,7 @@ from nml._layout cimport *
 
 from nml.errors import BufferError_
 
-LAYOUT_VERSION = 0x4C4D4E_0002
+LAYOUT_VERSION = 0x4C4D4E_0003
 cdef uint64_t VERSION = LAYOUT_VERSION
 
 SLOT, QUEUE, BROADCAST = KIND_SLOT, KIND_QUEUE, KIND_BROADCAST

@@ -265,21 +265,48 @@ def test_a_status_is_cleared_by_its_writers_a_queue_also_by_its_readers(config: 
     assert reader.queue_length() == 0
 
 
-def test_a_damaged_record_empties_the_queue_and_the_queue_goes_on(config: NmlConfig, own_namespace: str):
-    writer, reader = Channel(config, "queue", "a"), Channel(config, "queue", "b")
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("slot", "message 2 is not where it should be"),
+        ("queue", "a record of 1099511627776 bytes cannot be; the queue was emptied"),
+        ("news", "a record is not where it should be"),
+    ],
+)
+def test_damaged_memory_is_an_error_and_the_buffer_goes_on(
+    config: NmlConfig, own_namespace: str, name: str, problem: str
+):
+    writer, reader = Channel(config, name, "a"), Channel(config, name, "b")
     for number in range(2):
         writer.write(text(number))
-    path = Path(f"/dev/shm/pyemc.{own_namespace}.nml.2002")
-    head = (1).to_bytes(8, "little") + (280).to_bytes(8, "little")
+    path = Path(f"/dev/shm/pyemc.{own_namespace}.nml.{config.buffer(name).key}")
+    number = 2 if name == "slot" else 1
+    head = number.to_bytes(8, "little") + (280).to_bytes(8, "little")
+    wrong = (99).to_bytes(8, "little") if name == "slot" else head[:8]
     with path.open("r+b") as memory:
         at = memory.read().index(head)
-        memory.seek(at + 8)
-        memory.write((2**40).to_bytes(8, "little"))
-    with pytest.raises(BufferError_, match="a record of 1099511627776 bytes cannot be; the queue was emptied"):
+        memory.seek(at)
+        memory.write(wrong + (2**40).to_bytes(8, "little"))
+    with pytest.raises(BufferError_, match=f"buffer {name} is damaged: {problem}"):
         reader.read()
     assert reader.read() is None
     writer.write(text(3))
-    assert texts(reader) == ["3"]
+    assert reader.read().text == "3"
+
+
+def test_a_damaged_queue_stops_no_observer(config: NmlConfig, own_namespace: str):
+    writer = Channel(config, "queue", "a")
+    observer = Channel.connect(config.buffer("queue"), config.observer("queue"))
+    writer.write(text(0))
+    path = Path(f"/dev/shm/pyemc.{own_namespace}.nml.2002")
+    head = (1).to_bytes(8, "little") + (280).to_bytes(8, "little")
+    with path.open("r+b") as memory:
+        memory.seek(memory.read().index(head))
+        memory.write(bytes(16))
+    with pytest.raises(BufferError_, match="buffer queue is damaged: no record 1 in the queue"):
+        observer.read()
+    writer.write(text(1))
+    assert texts(observer) == ["1"]
 
 
 def test_a_buffer_outlives_the_channel_that_it_came_from(config: NmlConfig):
