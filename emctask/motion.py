@@ -90,6 +90,11 @@ class MotionClient:
         return bool(self.status.motionFlag & MotionFlag.ENABLE)
 
     @property
+    def in_error(self) -> bool:
+        """Did a move fail, a probe that found nothing for example?"""
+        return bool(self.status.motionFlag & MotionFlag.ERROR)
+
+    @property
     def state(self) -> MotionState:
         """Disabled, free, teleop or coordinated."""
         return MotionState(self.status.motion_state)

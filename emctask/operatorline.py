@@ -42,7 +42,7 @@ class OperatorLine:
         text = error.text
         if error.id:
             place = places.find(error.id)
-            where = f"line {place.line}" if place and place.line else "the last command"
+            where = f"line {place.line}" if place and place.block.file else "the MDI line"
             text = text.replace(f"line {error.id}", where)
         {11: self.error, 12: self.text, 13: self.display}.get(error.kind, self.error)(text)
 

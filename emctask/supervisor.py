@@ -18,6 +18,7 @@ class Supervisor:
     def __init__(self, task: Task) -> None:
         self._task = task
         self._lost: set[str] = set()
+        self._in_error = False
 
     def look(self) -> None:
         """React to whatever changed since the last cycle."""
@@ -42,8 +43,11 @@ class Supervisor:
                 task.fail(f"{name} does not answer any more; the machine is in E-stop")
 
     def _refusals(self) -> None:
+        """A command that motion refused or a move that failed ends the program."""
         task = self._task
-        if not task.motion.refused():
+        in_error = task.motion.in_error
+        arose, self._in_error = in_error and not self._in_error, in_error
+        if not task.motion.refused() and not arose:
             return
         if task.plan.active:
             task.runner.abort(Reason.MOTION_OR_IO_RCS_ERROR)

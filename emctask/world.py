@@ -68,7 +68,8 @@ class WorldModel(MoveCanon):
         return self.coords.units
 
     def get_external_feed_rate(self) -> float:
-        return self.linear_feed * 60.0 / self.coords.length(1.0)
+        feed = self.turn_feed if self.feed_mode else self.linear_feed * 60.0
+        return feed / self.coords.length(1.0)
 
     def get_external_motion_control_mode(self) -> int:
         return self.motion_mode

@@ -23,7 +23,8 @@ cdef struct Arc:
 cdef class MoveCanon(Canon):
     cdef readonly Coordinates coords
     cdef readonly int motion_mode, term_cond
-    cdef readonly double tolerance, naivecam_tolerance, linear_feed, angular_feed
+    cdef readonly double tolerance, naivecam_tolerance, linear_feed, angular_feed, turn_feed
+    cdef double join_tolerance
     cdef readonly bint synched
     cdef readonly int feed_mode, feed_spindle
     cdef public int indexer
@@ -38,6 +39,7 @@ cdef class MoveCanon(Canon):
     cpdef void arc(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, double cx, double cy, double cz, double nx, double ny, double nz, int turn, double vel, double ini_maxvel, double acc) except *
     cpdef void probe(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, double vel, double ini_maxvel, double acc, int probe_type) except *
     cpdef void tap(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, double vel, double ini_maxvel, double acc, double scale) except *
+    cdef void _limit_joining(self) noexcept
     cdef double* programmed_end(self) noexcept nogil
     cpdef void flush(self) except *
     cdef Limits straight_limits(self, const double* start, const double* to) noexcept nogil

@@ -28,6 +28,7 @@ class MoveCanon(Canon):
     naivecam_tolerance: float
     linear_feed: float
     angular_feed: float
+    turn_feed: float
     synched: bool
     feed_mode: int
     feed_spindle: int

@@ -6,7 +6,8 @@ the velocity and acceleration that the axes allow on each move. What comes out a
 
 Velocity of a straight move: each axis would need |distance| / MAX_VELOCITY; the slowest axis decides, and the path is counted along
 XYZ if any of them moves, else UVW, else the rotary axes. Acceleration likewise. A programmed feed counts along the same path.
-Suffixes: _v lu/s, _a lu/s^2. Joined lines are held back until ``flush``; whoever queues anything else flushes first.
+Joined lines are held back until ``flush``; whoever queues anything else flushes first. Lines are joined within half of the
+path tolerance (G64 P) at most, and a joined line leaves only the rest of the tolerance to the planner: path error within P.
 """
 
 from libc.math cimport INFINITY, atan2, cos, fabs, fmax, fmin, hypot, sin, sqrt
@@ -192,6 +193,7 @@ cdef class MoveCanon(Canon):
     cpdef void set_feed_rate(self, double rate) except *:
         cdef double linear, angular
         if self.feed_mode:
+            self.turn_feed = self.coords.length(rate)
             self.start_speed_feed_synch(self.feed_spindle, rate, True)
             return
         linear = self.coords.feed(rate)
@@ -214,10 +216,18 @@ cdef class MoveCanon(Canon):
         self.motion_mode = mode
         self.term_cond = _TERM_COND[mode]
         self.tolerance = self.coords.length(tolerance)
+        self._limit_joining()
 
     cpdef void set_naivecam_tolerance(self, double tolerance) except *:
         self.flush()
         self.naivecam_tolerance = self.coords.length(tolerance)
+        self._limit_joining()
+
+    cdef void _limit_joining(self) noexcept:
+        """How far joined lines may leave the program's path."""
+        self.join_tolerance = self.naivecam_tolerance
+        if self.tolerance > 0.0:
+            self.join_tolerance = fmin(self.join_tolerance, 0.5 * self.tolerance)
 
     cpdef void update_end_point(self, double x, double y, double z, double a, double b, double c, double u, double v, double w) except *:
         self.set_end(self.coords.to_machine(x, y, z, a, b, c, u, v, w))
@@ -359,7 +369,7 @@ cdef class MoveCanon(Canon):
         if self.chain_length and not self.may_join(to):
             self.flush()
         self.join(line, to)
-        if self.motion_mode != CONTINUOUS or self.naivecam_tolerance <= 0.0 or self.chain_length == CHAIN_MAX:
+        if self.motion_mode != CONTINUOUS or self.join_tolerance <= 0.0 or self.chain_length == CHAIN_MAX:
             self.flush()
 
     cdef bint may_join(self, const double* to) noexcept nogil:
@@ -386,7 +396,7 @@ cdef class MoveCanon(Canon):
             last = along
             for axis in range(3):
                 offset[axis] -= along * direction[axis] / length
-            if norm(offset[0], offset[1], offset[2]) > self.naivecam_tolerance:
+            if norm(offset[0], offset[1], offset[2]) > self.join_tolerance:
                 return False
         return True
 
@@ -398,12 +408,12 @@ cdef class MoveCanon(Canon):
     cdef bint arc_may_join(self, const Arc* arc) noexcept nogil:
         """Is the arc so flat and short that its two half chords stay within the tolerance?"""
         cdef int axis
-        if self.motion_mode != CONTINUOUS or self.naivecam_tolerance <= 0.0 or fabs(arc.angle) > 1.6:
+        if self.motion_mode != CONTINUOUS or self.join_tolerance <= 0.0 or fabs(arc.angle) > 1.6:
             return False
         for axis in range(3, 9):
             if fabs(arc.end[axis] - arc.start[axis]) > TINY:
                 return False
-        return arc.radius * (1.0 - cos(0.5 * arc.angle)) < self.naivecam_tolerance
+        return arc.radius * (1.0 - cos(0.5 * arc.angle)) < self.join_tolerance
 
     cdef void join_arc(self, int line, const Arc* arc) except *:
         cdef double middle[9]
@@ -420,10 +430,16 @@ cdef class MoveCanon(Canon):
     cpdef void flush(self) except *:
         """Send the line that is held back, if there is one."""
         cdef double to[9]
+        cdef double tolerance = self.tolerance
         if self.chain_length:
             copy_point(to, self.chain[self.chain_length - 1])
+            if self.chain_length > 1 and tolerance > 0.0:
+                self.tolerance = tolerance - self.join_tolerance
             self.chain_length = 0
-            self.send_line(self.chain_line, C_FEED, to)
+            try:
+                self.send_line(self.chain_line, C_FEED, to)
+            finally:
+                self.tolerance = tolerance
 
     cdef void send_line(self, int line, int kind, const double* to) except *:
         cdef Limits limits = self.straight_limits(self.end, to)

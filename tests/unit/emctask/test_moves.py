@@ -98,6 +98,21 @@ def test_short_lines_within_the_tolerance_become_one_that_carries_the_last_line_
     assert canon.lines[0][2:4] == (1.0, 0.0)
 
 
+def test_joining_and_blending_together_stay_within_the_path_tolerance():
+    class Tolerances(Recorder):
+        def line(self, *move):
+            self.lines.append((move[2], self.tolerance))
+
+    canon = Tolerances()
+    canon.set_feed_rate(1000.0)
+    canon.set_motion_control_mode(CANON_CONTINUOUS, 0.02)
+    canon.set_naivecam_tolerance(0.02)
+    for x, y in ((1.0, 0.008), (2.0, 0.0), (3.0, 0.018), (4.0, 0.0)):  # 0.018 is more than half of the tolerance
+        feed(canon, x=x, y=y)
+    canon.flush()
+    assert canon.lines == [(2.0, 0.01), (3.0, 0.02), (4.0, 0.02)]
+
+
 def test_a_corner_ends_the_joining(canon):
     canon.set_motion_control_mode(CANON_CONTINUOUS, 0.01)
     canon.set_naivecam_tolerance(0.01)
