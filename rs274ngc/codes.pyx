@@ -26,6 +26,7 @@ from rs274ngc.motion cimport (
 from rs274ngc.offsets cimport (
     axis_offset, check_axis_offset, check_g10, select_origin, set_data, store_reference, tool_length,
 )
+from rs274ngc.path cimport polar_to_xy
 from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_point, quadratic_spline
 from rs274ngc.state cimport State, fail, fail_word
 from rs274ngc.threads cimport check_g76, check_threading, rigid_tap, spindle_feed, threading_cycle
@@ -218,13 +219,17 @@ cdef int enhance(State s, Block* b) except -1:
                 return fail(s, "All axes missing with motion code", b.g_at[1])
         b.motion = b.g[1]
     elif taken:
-        return 0
+        pass
     elif axes:
         if s.motion < 0 or s.motion == 800:
             return fail(s, "Cannot use axis values without a g code that uses them")
         b.motion = s.motion
     elif b.words & M_IJK and (s.motion == 20 or s.motion == 30):
         b.motion = s.motion
+    if b.words & M_POLAR:
+        if b.motion < 0:
+            return fail(s, "Polar coordinates can only be used for motion")
+        polar_to_xy(s, b)
     if b.motion >= 0:
         b.steps |= 1ULL << STEP_MOTION
     return 0

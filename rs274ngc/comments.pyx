@@ -64,8 +64,8 @@ cdef int act_on_comment(State s, Block* b) except -1:
     """Do what the last comment of the line says, or show it."""
     cdef str text = (<bytes>s.text[b.comment:b.comment + b.comment_size]).decode("utf-8", "replace")
     match = ACTIVE.match(text)
-    if match is None:
+    if match is None or match.group(1).lower().startswith("probe"):
         s.canon.comment(text.lstrip(" \t"))
-    else:
+    if match is not None:
         ACTIONS[match.group(1).lower()](s, match.group(2))
     return 0

@@ -99,7 +99,8 @@ cdef int restore_spindles_and_feed(State s, Block* b, saved) except -1:
             b.value[W_D] = css
             set_spindle_mode(s, b, 960 if css != 0.0 else 970)
     b.words = 0
-    set_feed_mode(s, b, saved.feed_mode)
+    if s.feed_mode != saved.feed_mode:
+        set_feed_mode(s, b, saved.feed_mode)
     if s.feed != saved.feed:
         b.value[W_F] = saved.feed
         set_feed(s, b)

@@ -43,11 +43,13 @@ cdef int at_height(State s, double height, int axis, bint rapid) except -1:
     return traverse(s, end) if rapid else feed(s, end)
 
 
-cdef int at_place(State s, Hole* h) except -1:
+cdef int at_place(State s, Hole* h, double height) except -1:
+    """Over the place, at least as high as ``height``."""
     cdef double[9] end
     memcpy(end, s.pos, sizeof(end))
     end[h.first] = h.x
     end[h.second] = h.y
+    end[h.third] = max(end[h.third], height)
     return traverse(s, end)
 
 
@@ -164,22 +166,22 @@ cdef int back_bore(State s, Block* b, Hole* h) except -1:
     if turning == STOPPED:
         return fail(s, "Spindle not turning in g87", b.g_at[1])
     h.x, h.y = x, y
-    at_place(s, h)
+    at_place(s, h, h.bottom)
     s.canon.stop_spindle_turning(n)
     s.canon.orient_spindle(n, 0.0, turning)
     at_height(s, h.bottom, h.third, True)
     h.x, h.y = hole_x, hole_y
-    at_place(s, h)
+    at_place(s, h, h.bottom)
     restart(s, n, turning)
     at_height(s, middle, h.third, False)
     at_height(s, h.bottom, h.third, False)
     s.canon.stop_spindle_turning(n)
     s.canon.orient_spindle(n, 0.0, turning)
     h.x, h.y = x, y
-    at_place(s, h)
+    at_place(s, h, h.bottom)
     at_height(s, h.clear, h.third, True)
     h.x, h.y = hole_x, hole_y
-    at_place(s, h)
+    at_place(s, h, h.bottom)
     return restart(s, n, turning)
 
 
@@ -290,7 +292,7 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
     for k in range(repeats):
         h.x += step_x
         h.y += step_y
-        at_place(s, &h)
+        at_place(s, &h, h.r)
         if s.pos[h.third] != h.r:
             at_height(s, h.r, h.third, True)
         cycle[code](s, b, &h)

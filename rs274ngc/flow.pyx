@@ -173,7 +173,8 @@ cdef class Flow:
         if len(self.s.frames) > 1 and self.s.frame.sub:
             fail(self.s, "Nested subroutine definition", at)
         self.s.subs[label] = (self.source.path, self.source.position, self.source.line)
-        self.must_skip_to(label, ("endsub",))
+        if self.skip_to(label, ("endsub",)) == -1:
+            fail(self.s, "File ended with no percent sign or program end")
 
     def do_endsub(self, str label, int at):
         self.leave(label, at, "endsub")
@@ -379,9 +380,9 @@ cdef class Flow:
         cdef double value
         if s.frame.fanuc:
             fail(s, "Fanuc 'O....' subroutine definition must end with 'M99'", at)
-        if not s.frame.sub or s.frame.sub != label:
-            if not s.frame.sub:
-                fail(s, f"{s.line}: not in a subroutine definition: '{label}'", at)
+        if not s.frame.sub:
+            fail(s, f"{s.line}: not in a subroutine definition: '{label}'", at)
+        if s.frame.sub != label and keyword == "endsub":
             fail(s, f"{s.line}: no matching label: '{label}' (found '{s.frame.sub}' in line {s.frame.body_line})", at)
         returned = False
         value = 0.0

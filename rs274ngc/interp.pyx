@@ -49,9 +49,11 @@ cdef class Interpreter:
         self.state.interp = self
         self.state.params[5599] = 1.0
         self.flow = Flow(self.state)
+        self.flow.search_path = [os.curdir]
         self.parameter_file = None
         if ini is not None:
             apply_settings(self, ini)
+            self.flow.search_path = self.folders()
 
     # --- Beginning and end
 
@@ -122,7 +124,7 @@ cdef class Interpreter:
         self.flow.source = Source(path)
         s.file = path
         s.subs.clear()
-        self.flow.search_path = [os.path.dirname(os.path.abspath(path))] + self.folders()
+        self.flow.search_path = self.folders()
         self.percent = False
         while True:
             try:
@@ -143,9 +145,9 @@ cdef class Interpreter:
         s.raw[0] = 0
 
     def folders(self):
-        """Where subroutine files are looked for besides the program's own folder."""
+        """Where subroutine files are looked for: as the INI file says, else in the current folder."""
         prefix = [self.state.program_prefix] if self.state.program_prefix else []
-        return prefix + list(self.state.subroutine_path)
+        return prefix + list(self.state.subroutine_path) or [os.curdir]
 
     def close(self):
         """Let go of the program file."""

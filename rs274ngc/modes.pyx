@@ -95,8 +95,6 @@ cdef int set_retract(State s, Block* b, int code) except -1:
 cdef int set_feed_mode(State s, Block* b, int code) except -1:
     """G93, G94, G95"""
     cdef int spindle = read_spindle(s, b, "Invalid spindle ($) number in Spindle Feed command")
-    if code == s.feed_mode:
-        return 0
     s.feed_mode = code
     if code == 930:
         s.canon.comment("interpreter: feed mode set to inverse time")

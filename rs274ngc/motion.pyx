@@ -9,7 +9,6 @@ from rs274ngc.compensation cimport compensated_arc, compensated_straight
 from rs274ngc.path cimport *
 from rs274ngc.state cimport WAIT_PROBE, State, fail, fail_word
 
-cdef double PROBE_DISTANCE_INCH = 0.01      # shortest probing move
 cdef int INCHES = CANON_UNITS_INCHES, SIDE_OFF = CANON_SIDE_OFF
 cdef int XY = CANON_PLANE_XY, XZ = CANON_PLANE_XZ, YZ = CANON_PLANE_YZ
 cdef str AXES = "XYZABCUVW"
@@ -174,16 +173,14 @@ cdef int check_arc_words(State s, Block* b) except -1:
 cdef int probe(State s, Block* b, int code) except -1:
     """G38.2 to G38.5: the canon stops at the contact; the next line finds the result in #5061 to #5070"""
     cdef double[9] end
-    cdef double distance, shortest = PROBE_DISTANCE_INCH * (1.0 if s.units == INCHES else 25.4)
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot probe with cutter radius comp on", b.g_at[G_MOTION_GROUP])
     if s.feed_mode == 950:
         return fail(s, "Cannot probe with feed per rev mode", b.g_at[G_MOTION_GROUP])
-    if s.feed == 0.0 and s.feed_mode == 940:
+    if s.feed == 0.0:
         return fail(s, "Cannot probe with zero feed rate", b.g_at[G_MOTION_GROUP])
     find_end(s, b, end)
-    distance = straight_length(s.pos, end)
-    if distance < shortest and not (b.words & M_ABC):
+    if straight_length(s.pos, end) == 0.0:
         return fail(s, "Start point too close to probe point", b.g_at[G_MOTION_GROUP])
     s.canon.turn_probe_on()
     s.canon.straight_probe(s.line, end[0], end[1], end[2], end[3], end[4], end[5], end[6], end[7], end[8], code - 382)

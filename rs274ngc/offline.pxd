@@ -10,7 +10,7 @@ cdef class OfflineCanon(Canon):
     cdef public list tools              # Tool by index; 0 is the spindle
     cdef public int selected            # index of the selected tool, -1: none
     cdef public int slot                # index that the tool in the spindle came from
-    cdef public bint mist, flood, probed
+    cdef public bint mist, flood
     cdef double[9] pos                  # program units and coordinates
     cdef double[9] g5x
     cdef double[9] g92

@@ -4,6 +4,7 @@ It stands where it was last sent, its probe always finds the target, its tools a
 LinuxCNC's stand-alone interpreter, machine units are inches while programs begin in millimetres.
 """
 
+from libc.math cimport sqrt
 from libc.string cimport memcpy
 
 from rs274ngc import nurbs
@@ -12,6 +13,7 @@ from rs274ngc.canon import (
     CANON_UNITS_MM, Tool,
 )
 
+cdef double BACK_OFF_INCH = 0.01        # how far short of its target a probing move ends
 cdef double MM_PER_INCH = 25.4
 cdef double INCHES_PER_MM = 0.03937007874016    # LinuxCNC's figure for its stand-alone machine, so that results agree
 
@@ -96,9 +98,14 @@ cdef class OfflineCanon(Canon):
         self.move_to(x, y, z, a, b, c, u, v, w)
 
     cpdef void straight_probe(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, int probe_type) except *:
+        cdef double dx = x - self.pos[0], dy = y - self.pos[1], dz = z - self.pos[2]
+        cdef double length = sqrt(dx * dx + dy * dy + dz * dz), back = BACK_OFF_INCH
+        if self.units != CANON_UNITS_INCHES:
+            back *= MM_PER_INCH
         self.move_to(x, y, z, a, b, c, u, v, w)
         memcpy(self.probe_pos, self.pos, sizeof(self.pos))
-        self.probed = True
+        if length > 0.0:
+            self.move_to(x - back * dx / length, y - back * dy / length, z - back * dz / length, a, b, c, u, v, w)
 
     cpdef void arc_feed(self, int line, double first_end, double second_end, double first_axis, double second_axis, int rotation, double axis_end, double a, double b, double c, double u, double v, double w) except *:
         if self.plane == 1:
@@ -156,9 +163,6 @@ cdef class OfflineCanon(Canon):
 
     cpdef tuple get_external_probe_position(self):
         return tuple([self.probe_pos[k] for k in range(9)])
-
-    cpdef int get_external_probe_tripped_value(self) except? -1:
-        return self.probed
 
     cpdef tuple get_external_tool_offset(self):
         return tuple([self.tool[k] for k in range(9)])

@@ -69,8 +69,6 @@ cdef int find_end(State s, Block* b, double* end) except -1:
         end[0] = s.comp_x
         end[1] = s.comp_y
         end[2] = s.comp_z
-    if b.words & M_POLAR:
-        polar_end(s, b, end)
     if b.g[0] == 530:
         return find_machine_end(s, b, end)
     if b.words & M_AXES:
@@ -82,6 +80,34 @@ cdef int find_end(State s, Block* b, double* end) except -1:
                 end[k] = end[k] + value if s.incremental else value
                 if s.wrapped_rotary and not s.incremental:
                     unwrap(s, k, value, &end[k])
+    return 0
+
+
+cdef int polar_to_xy(State s, Block* b) except -1:
+    """``@`` distance from the origin and ``^`` angle become X and Y words; either may stay as it is."""
+    cdef double x = s.comp_x if s.comp_side != SIDE_OFF else s.pos[0]
+    cdef double y = s.comp_y if s.comp_side != SIDE_OFF else s.pos[1]
+    cdef double distance = hypot(x, y), angle = atan2(y, x) / DEGREE
+    cdef bint incremental = b.g[3] == 910 or (s.incremental and b.g[3] != 900)
+    if has(b, W_X):
+        return fail_word(s, "Cannot specify both polar coordinate and X word", W_X)
+    if has(b, W_Y):
+        return fail_word(s, "Cannot specify both polar coordinate and Y word", W_Y)
+    if s.plane != XY:
+        return fail(s, "Cannot use polar coordinate except in G17 plane")
+    if b.g[0] == 530:
+        return fail(s, "Cannot use polar coordinates with G53", b.g_at[0])
+    if incremental and x == 0.0 and y == 0.0:
+        return fail(s, "G91 motion with polar coordinates is indeterminate when at the origin")
+    if not incremental and not has(b, W_CARET) and x == 0.0 and y == 0.0:
+        return fail(s, "Must specify angle in polar coordinate if at the origin")
+    if has(b, W_AT):
+        distance = b.value[W_AT] + (distance if incremental else 0.0)
+    if has(b, W_CARET):
+        angle = b.value[W_CARET] + (angle if incremental else 0.0)
+    b.value[W_X] = distance * cos(angle * DEGREE) - (x if incremental else 0.0)
+    b.value[W_Y] = distance * sin(angle * DEGREE) - (y if incremental else 0.0)
+    b.words |= (1 << W_X) | (1 << W_Y)
     return 0
 
 
@@ -107,40 +133,12 @@ cdef int find_machine_end(State s, Block* b, double* end) except -1:
     """G53: the words are machine coordinates."""
     cdef int k
     cdef double value
-    if b.words & M_POLAR:
-        return fail(s, "Cannot use polar coordinates with G53")
     program_to_machine(s, end)
     for k in range(9):
         if has(b, axis_words[k]):
             value = b.value[axis_words[k]]
             end[k] = value * 0.5 if k == 0 and s.diameter_mode else value
     machine_to_program(s, end)
-    return 0
-
-
-cdef int polar_end(State s, Block* b, double* end) except -1:
-    """``@`` distance from the origin and ``^`` angle, either may stay as it is."""
-    cdef double distance = hypot(end[0], end[1]), angle = atan2(end[1], end[0]) / DEGREE
-    if has(b, W_X):
-        return fail_word(s, "Cannot specify both polar coordinate and X word", W_X)
-    if has(b, W_Y):
-        return fail_word(s, "Cannot specify both polar coordinate and Y word", W_Y)
-    if s.plane != XY:
-        return fail(s, "Cannot use polar coordinate except in G17 plane")
-    if s.incremental:
-        if end[0] == 0.0 and end[1] == 0.0:
-            return fail(s, "G91 motion with polar coordinates is indeterminate when at the origin")
-        distance += value_or(b, W_AT, 0.0)
-        angle += value_or(b, W_CARET, 0.0)
-    else:
-        if has(b, W_AT):
-            distance = b.value[W_AT]
-            if not has(b, W_CARET) and end[0] == 0.0 and end[1] == 0.0:
-                return fail(s, "Must specify angle in polar coordinate if at the origin")
-        if has(b, W_CARET):
-            angle = b.value[W_CARET]
-    end[0] = distance * cos(angle * DEGREE)
-    end[1] = distance * sin(angle * DEGREE)
     return 0
 
 

@@ -337,7 +337,6 @@ cdef class PrintCanon(OfflineCanon):
         self.say("CHANGE_TOOL")
 
     cpdef void change_tool_number(self, int pocket) except *:
-        OfflineCanon.change_tool_number(self, pocket)
         self.say("CHANGE_TOOL_NUMBER", str(pocket))
 
     cpdef void set_tool_table_entry(self, int pocket, int tool, double x, double y, double z, double a, double b, double c, double u, double v, double w, double diameter, double frontangle, double backangle, int orientation) except *:
@@ -393,12 +392,6 @@ cdef class PrintCanon(OfflineCanon):
 
     cpdef void logappend(self, str name) except *:
         self.say("LOGAPPEND", '"' + name + '"')
-
-    cpdef void probeopen(self, str name) except *:
-        self.say("COMMENT", f'"probeopen {name}"')
-
-    cpdef void probeclose(self) except *:
-        self.say("COMMENT", '"probeclose"')
 
     cpdef void print_text(self, str text) except *:
         self.flush()

@@ -36,7 +36,7 @@ cdef class State:
         self.program_prefix = ""
         self.fanuc_subs = True
         self.spindles = 1
-        self.features = FEATURE_INI_VARS | FEATURE_HAL_PIN_VARS
+        self.features = 0
         self.arc_tolerance_inch = 0.002 * 2.0**0.5
         self.arc_tolerance_mm = 0.02 * 2.0**0.5
         self.axis_mask = 0x1FF
@@ -56,7 +56,7 @@ cdef class State:
         self.control_mode = CANON_CONTINUOUS
         self.comp_side = CANON_SIDE_OFF
         self.tool_offset_code = 490
-        self.retract_old_z = True
+        self.retract_old_z = False
         self.origin_index = 1
         self.feed_override = self.feed_hold = True
         self.selected_index = -1
