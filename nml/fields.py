@@ -10,6 +10,7 @@ Layout facts: System V ABI for 64-bit x86, which is what g++ does for LinuxCNC's
 from __future__ import annotations
 
 import struct as packing
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar, overload
 
@@ -356,18 +357,52 @@ def put_struct(field: Field, cls: type[S], buffer: bytearray, at: int, value: S 
         raise field.refuse(value, error) from None
 
 
-class Array(Generic[T]):
+class Elements(ABC):
+    """What live views of arrays share."""
+
+    __slots__ = ("_at", "_buf")
+
+    _buf: bytearray
+    _at: int
+    _field: Any
+
+    @abstractmethod
+    def __iter__(self) -> Iterator[Any]: ...
+
+    def __len__(self) -> int:
+        length: int = self._field.length
+        return length
+
+    def _position(self, index: int) -> int:
+        """Where an element lies in the buffer; negative indices count from the end."""
+        field = self._field
+        if index < 0:
+            index += field.length
+        if not 0 <= index < field.length:
+            raise IndexError(f"{field.owner}.{field.name}[{index}]: {field.length} elements")
+        at: int = self._at + index * field.stride
+        return at
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, (Elements, list, tuple)):
+            return list(self) == list(other)
+        return NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return repr(list(self))
+
+
+class Array(Elements, Generic[T]):
     """Live view of an array of numbers."""
 
-    __slots__ = ("_at", "_buf", "_field")
+    __slots__ = ("_field",)
 
     def __init__(self, buffer: bytearray, at: int, field: ArrayField[T]) -> None:
         self._buf = buffer
         self._at = at
         self._field: ArrayField[T] = field
-
-    def __len__(self) -> int:
-        return self._field.length
 
     def tolist(self) -> list[T]:
         """All elements, decoded at once."""
@@ -391,37 +426,16 @@ class Array(Generic[T]):
         except (packing.error, OverflowError) as error:
             raise self._field.refuse(value, error) from None
 
-    def _position(self, index: int) -> int:
-        length = self._field.length
-        if index < 0:
-            index += length
-        if not 0 <= index < length:
-            raise IndexError(f"{self._field.owner}.{self._field.name}[{index}]: {length} elements")
-        return self._at + index * self._field.type.size
 
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, (Array, list, tuple)):
-            return list(self) == list(other)
-        return NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return repr(self.tolist())
-
-
-class StructArray(Generic[S]):
+class StructArray(Elements, Generic[S]):
     """Live view of an array of structures; so are its elements."""
 
-    __slots__ = ("_at", "_buf", "_field")
+    __slots__ = ("_field",)
 
     def __init__(self, buffer: bytearray, at: int, field: StructArrayField[S]) -> None:
         self._buf = buffer
         self._at = at
-        self._field = field
-
-    def __len__(self) -> int:
-        return self._field.length
+        self._field: StructArrayField[S] = field
 
     def __getitem__(self, index: int) -> S:
         return self._field.struct.view(self._buf, self._position(index))
@@ -432,24 +446,6 @@ class StructArray(Generic[S]):
     def __iter__(self) -> Iterator[S]:
         cls = self._field.struct
         return (cls.view(self._buf, self._at + index * cls.SIZE) for index in range(self._field.length))
-
-    def _position(self, index: int) -> int:
-        length = self._field.length
-        if index < 0:
-            index += length
-        if not 0 <= index < length:
-            raise IndexError(f"{self._field.owner}.{self._field.name}[{index}]: {length} elements")
-        return self._at + index * self._field.struct.SIZE
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, (StructArray, list, tuple)):
-            return list(self) == list(other)
-        return NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return repr(list(self))
 
 
 class Maker(Generic[T]):

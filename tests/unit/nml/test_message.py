@@ -141,13 +141,14 @@ def test_texts_for_the_operator_are_cut_between_characters():
 
 
 def test_bytes_that_are_no_such_message_are_refused():
-    with pytest.raises(DecodeError, match="needs 504 bytes, here are 10"):
+    size = EMCMOT_COMMAND.SIZE
+    with pytest.raises(DecodeError, match=f"needs {size} bytes, here are 10"):
         EMCMOT_COMMAND.from_bytes(bytes(10))
     with pytest.raises(DecodeError, match="is type 3001, here is type 3003"):
-        EMCMOT_COMMAND.from_bytes(bytes(EMCMOT_ERROR(text="x")) + bytes(400))
+        EMCMOT_COMMAND.from_bytes(bytes(EMCMOT_ERROR(text="x")) + bytes(size))
     with pytest.raises(DecodeError, match="unknown message type 12345"):
         decode(bytearray((12345).to_bytes(4, "little") + bytes(20)))
-    with pytest.raises(DecodeError, match=r"EMCMOT_COMMAND \(type 3001\) needs 504 bytes, here are 100"):
+    with pytest.raises(DecodeError, match=rf"EMCMOT_COMMAND \(type 3001\) needs {size} bytes, here are 100"):
         decode(EMCMOT_COMMAND().data[:100])
 
 
