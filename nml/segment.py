@@ -79,13 +79,18 @@ class Segment:
         self.shm = shm_name(f"nml.{key}")
         self.path = path
         self.map: mmap.mmap | None = None
+        end = clock.host_now() + PATIENCE
         while self.map is None:
+            if clock.host_now() > end:
+                raise BufferError_(f"buffer {name}: {path or self.shm} is in use by another version of this program")
             self.fd = self._open()
             try:
                 self.map = self._attach()
             finally:
                 if self.map is None:
                     os.close(self.fd)
+            if self.map is None:
+                clock.host_sleep(0.001)
         named = self.shm if path is None else None
         self._release = weakref.finalize(self, _release, self.fd, named, os.getpid())
 

@@ -357,6 +357,19 @@ def test_a_segment_that_nobody_uses_any_more_is_made_anew(config: NmlConfig, own
         assert channel.queue_length() == 0
 
 
+def test_a_segment_of_another_version_is_told_apart(
+    config: NmlConfig, own_namespace: str, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("nml.segment.PATIENCE", 0.05)
+    channel = Channel(config, "queue", "a")
+    with Path(f"/dev/shm/pyemc.{own_namespace}.nml.2002").open("r+b") as memory:
+        memory.write(bytes(8))
+    with pytest.raises(BufferError_, match="is in use by another version of this program"):
+        Channel(config, "queue", "b")
+    channel.close()
+    assert segments() == []
+
+
 def test_two_declarations_of_one_key_are_told_apart(config: NmlConfig):
     with Channel(config, "slot", "a"), pytest.raises(BufferError_, match=r"buffer other: \d+ bytes by this NML file"):
         Channel(config, "other", "a")
