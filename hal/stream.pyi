@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 TYPE_LETTERS: dict[str, int]
+LETTERS: dict[int, str]
 
 def check_types(text: str) -> str: ...
 

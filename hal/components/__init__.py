@@ -19,6 +19,7 @@ MODULES = {
     "threads": ("threads", "load"),
     "sampler": ("fifo", "load_sampler"),
     "streamer": ("fifo", "load_streamer"),
+    "scope": ("fifo", "load_scope"),
 }
 
 

@@ -1,6 +1,6 @@
-"""``sampler`` and ``streamer``: HAL pins to a queue in shared memory and back, every period. Loaded by the host.
+"""``sampler``, ``streamer`` and ``scope``: HAL pins to a queue in shared memory and back, every period.
 
-The other ends are ``halsampler`` and ``halstreamer`` (``hal.sampling``).
+The other ends are ``halsampler``, ``halstreamer`` (``hal.sampling``) and ``hal.capture``.
 """
 
 from libc.stdint cimport int32_t, uint8_t
@@ -12,7 +12,7 @@ from hal.stream cimport (
 
 from hal._shm import BIT, IN, IO, OUT, S32
 from hal._threads import Memory
-from hal.stream import TYPE_LETTERS, check_types
+from hal.stream import LETTERS, TYPE_LETTERS, check_types
 from nml.errors import HalError
 
 DEFAULT_DEPTH = 100
@@ -156,4 +156,40 @@ def load_streamer(host, dict args):
         s.clock = pin_of(comp, f"{name}.clock", BIT, IN)
         s.clock_mode = pin_of(comp, f"{name}.clock-mode", S32, IN)
         comp.function(name, <size_t>&stream, address)
+    comp.ready()
+
+
+cdef struct Scope:
+    hal_fifo* fifo
+    hal_pin pins[MAX_COLUMNS]
+
+
+cdef void look(Scope* s, long period) noexcept nogil:
+    cdef hal_cell* cell = fifo_room(s.fifo)
+    cdef unsigned int i
+    if cell != NULL:
+        for i in range(s.fifo.columns):
+            cell[i] = at(s.pins[i])[0]
+        fifo_publish(s.fifo)
+
+
+def load_scope(host, dict args):
+    """pins=name,... depth=samples: queue pins and parameters of others as they are, by ``scope.capture``"""
+    comp = host.component("scope")
+    items = [host.hal.item(name)[1] for name in args.get("pins", "").split(",") if name]
+    if not 1 <= len(items) <= MAX_COLUMNS:
+        raise HalError(f"scope: pins= is required, 1 to {MAX_COLUMNS} names")
+    types = "".join(LETTERS[item.type] for item in items)
+    cdef Stream fifo = Stream("scope", int(args.get("depth", "10000")), types)
+    cdef size_t address
+    comp.on_unload(fifo.close)
+    memory = Memory(sizeof(Scope))
+    comp.keep(memory)
+    address = memory.address
+    cdef Scope* s = <Scope*>address
+    s.fifo = fifo.fifo
+    for i, item in enumerate(items):
+        address = item.address
+        s.pins[i] = <hal_pin>address
+    comp.function("scope.capture", <size_t>&look, <size_t>s)
     comp.ready()
