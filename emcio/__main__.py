@@ -14,7 +14,7 @@ from emcio.sources import FileTools, NoTools, ToolSource
 from emcio.toolstore import ToolStore
 from nml.channel import Channel
 from nml.config import NmlConfig
-from nml.errors import ConfigError, PyemcError
+from nml.errors import PyemcError
 from nml.inifile import IniFile
 
 DEFAULT_CYCLE_S = 0.1
@@ -53,7 +53,8 @@ def build(ini: IniFile) -> IoController:
     cycle_s = ini.real("EMCIO", "CYCLE_TIME", DEFAULT_CYCLE_S, maximum=10.0)
     store = ToolStore(ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False))
     source = tool_source(ini)
-    source.load(store)
+    for remark in source.load(store):
+        print(remark, file=sys.stderr)
     config = NmlConfig.load()
     channels = IoChannels(
         commands=Channel(config, "toolCmd", process="tool"),
@@ -72,7 +73,8 @@ def tool_source(ini: IniFile) -> ToolSource:
     path = ini.resolve(name)
     if not path.exists():
         place = ini.place("EMCIO", "TOOL_TABLE")
-        raise ConfigError(f"[EMCIO]TOOL_TABLE = {name}: there is no such file; an empty one will do", place)
+        print(f"{place}: [EMCIO]TOOL_TABLE = {name}: there is no such file; this machine has no tools", file=sys.stderr)
+        return NoTools()
     return FileTools(path)
 
 

@@ -196,7 +196,8 @@ class IoController:
         self.changer.table_changed = self.changer.must_save = True
 
     def _load_table(self, command: EMC_TOOL_LOAD_TOOL_TABLE) -> None:
-        self.source.load(self.store, command.file)
+        for remark in self.source.load(self.store, command.file):
+            self._complain(remark)
         self.changer.table_changed = True
 
     def _estop_on(self, command: Message) -> None:

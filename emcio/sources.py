@@ -13,8 +13,11 @@ from emcio.tooltable import Tool, ToolFile
 class ToolSource(Protocol):
     """What the controller needs of a source."""
 
-    def load(self, store: ToolStore, path: str = "") -> None:
-        """Fill the store, from the named file if there is a name; ConfigError, store unchanged, when that fails."""
+    def load(self, store: ToolStore, path: str = "") -> list[str]:
+        """Fill the store, from the named file if there is a name; what was left out, and why.
+
+        ConfigError, store unchanged, when there is nothing to read.
+        """
 
     def save(self, store: ToolStore) -> None:
         """Pockets or values have changed; returns at once."""
@@ -41,11 +44,12 @@ class NoTools:
 
     busy = False
 
-    def load(self, store: ToolStore, path: str = "") -> None:
+    def load(self, store: ToolStore, path: str = "") -> list[str]:
         """Nothing to read, unless a file is named."""
-        if path:
-            table = ToolFile(path)
-            store.load(table.tools, table)
+        if not path:
+            return []
+        table = ToolFile(path)
+        return table.remarks + store.load(table.tools, table)
 
     def save(self, store: ToolStore) -> None:
         """Nowhere to write to."""
@@ -71,12 +75,13 @@ class FileTools:
         self._file = ToolFile(path)
         self._saver = Saver(path)
 
-    def load(self, store: ToolStore, path: str = "") -> None:
+    def load(self, store: ToolStore, path: str = "") -> list[str]:
         """Read the table anew; a named file is read in its place, but the table is still saved to its own."""
         table = ToolFile(path or self._file.path)
-        store.load(table.tools, table)
+        remarks = table.remarks + store.load(table.tools, table)
         if not path or Path(path).resolve() == self._file.path.resolve():
             self._file = table
+        return remarks
 
     def save(self, store: ToolStore) -> None:
         """Write every value that changed."""

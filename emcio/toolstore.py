@@ -13,7 +13,6 @@ from collections.abc import Iterable
 
 from emcio.tooltable import Tool, ToolFile
 from nml.emc.tooltable import CANON_POCKETS_MAX, EMC_TOOL_TABLE
-from nml.errors import ConfigError
 
 NO_TOOL = -1
 
@@ -31,43 +30,43 @@ class ToolStore:
         """Nothing is in the spindle."""
         self.entries[0] = Tool(toolno=NO_TOOL if self.random else 0)
 
-    def load(self, tools: Iterable[Tool], file: ToolFile | None = None) -> None:
+    def load(self, tools: Iterable[Tool], file: ToolFile | None = None) -> list[str]:
         """Take over what the file or the data base lists; the tool in a nonrandom spindle gets its new values.
 
-        ConfigError names the line with a number that this kind of changer does not allow; then nothing has changed.
+        Tools that this kind of changer cannot hold are left out; the result says which and why.
         """
         entries = [Tool() for _ in range(CANON_POCKETS_MAX)]
         entries[0] = self.entries[0]
-        last = 0
+        taken: dict[int, int] = {}
+        remarks = []
         for tool in tools:
-            self._check(tool, file)
-            index = tool.pocketno if self.random else last + 1
-            if index >= CANON_POCKETS_MAX:
-                raise ConfigError(f"more than {CANON_POCKETS_MAX - 1} tools", file.place(tool.toolno) if file else None)
-            if self.random and entries[index].toolno != NO_TOOL and index:
-                raise ConfigError(
-                    f"pocket {index} holds T{entries[index].toolno} already; pockets of a random changer must differ",
-                    file.place(tool.toolno) if file else None,
-                )
+            index = tool.pocketno if self.random else len(taken) + 1
+            problem = self._problem(tool, index, taken)
+            if problem:
+                remarks.append(f"{file.place(tool.toolno)}: {problem}" if file else problem)
+                continue
             entries[index] = tool.copy()
-            last = max(last, index)
+            taken[index] = tool.toolno
         self.entries = entries
-        self.last_index = last
+        self.last_index = max(taken, default=0)
         in_spindle = self.entries[0].toolno
         home = self.index_of(in_spindle) if not self.random and in_spindle > 0 else -1
         if home > 0:
             self._copy_to_spindle(home)
+        return remarks
 
-    def _check(self, tool: Tool, file: ToolFile | None) -> None:
-        if self.random and not 0 <= tool.pocketno < CANON_POCKETS_MAX:
-            problem = f"P{tool.pocketno}: pockets of a random changer are 0 (spindle) to {CANON_POCKETS_MAX - 1}"
-        elif not self.random and tool.toolno < 1:
-            problem = f"T{tool.toolno}: tool numbers begin at 1 on a nonrandom changer (T0 is the empty spindle)"
-        elif tool.toolno < 0:
-            problem = f"T{tool.toolno}: tool numbers begin at 0"
-        else:
-            return
-        raise ConfigError(problem, file.place(tool.toolno) if file else None)
+    def _problem(self, tool: Tool, index: int, taken: dict[int, int]) -> str:
+        """Why a tool cannot have this index; empty if it can."""
+        last = CANON_POCKETS_MAX - 1
+        if tool.toolno < (0 if self.random else 1):
+            rule = "from 0" if self.random else "from 1 on a nonrandom changer, T0 is the empty spindle"
+            return f"T{tool.toolno} is left out: tool numbers go {rule}"
+        if not 0 <= index <= last:
+            where = "pockets of a random changer are 0 (spindle)" if self.random else "tables hold tools 1"
+            return f"T{tool.toolno} P{tool.pocketno} is left out: {where} to {last}"
+        if index in taken:
+            return f"T{tool.toolno} is left out: pocket {index} holds T{taken[index]} already"
+        return ""
 
     @property
     def in_spindle(self) -> int:

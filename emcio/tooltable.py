@@ -143,29 +143,39 @@ def update_line(text: str, tool: Tool) -> str:
 
 
 class ToolFile:
-    """A tool table file: its lines as they are, and the tools in them."""
+    """A tool table file: its lines as they are, and the tools in them.
+
+    A line that is no tool, of LinuxCNC's old column format for instance, is kept but not used; ``remarks`` says why.
+    """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Read the file; ConfigError naming the line that is wrong, or the file that cannot be read."""
+        """Read the file; ConfigError when it cannot be read."""
         self.path = Path(path)
         self.lines: list[str] = []
         self.tools: list[Tool] = []
+        self.remarks: list[str] = []
         try:
             content = self.path.read_text(encoding="utf-8", errors="surrogateescape")
         except OSError as error:
             raise ConfigError(f"the tool table cannot be read: {error.strerror}", Place(str(self.path))) from None
         self._line_of: dict[int, int] = {}
         for number, line in enumerate(content.splitlines()):
-            place = Place(str(self.path), number + 1)
-            tool = parse_line(line, place)
             self.lines.append(line)
-            if tool is None:
-                continue
-            if tool.toolno in self._line_of:
-                first = self._line_of[tool.toolno] + 1
-                raise ConfigError(f"T{tool.toolno} is in line {first} already; tool numbers must differ", place)
-            self._line_of[tool.toolno] = number
-            self.tools.append(tool)
+            try:
+                self._take(number, line)
+            except ConfigError as error:
+                self.remarks.append(str(error))
+
+    def _take(self, number: int, line: str) -> None:
+        place = Place(str(self.path), number + 1)
+        tool = parse_line(line, place)
+        if tool is None:
+            return
+        if tool.toolno in self._line_of:
+            first = self._line_of[tool.toolno] + 1
+            raise ConfigError(f"T{tool.toolno} is in line {first} already; tool numbers must differ", place)
+        self._line_of[tool.toolno] = number
+        self.tools.append(tool)
 
     def place(self, toolno: int) -> Place:
         """Where a tool of the file stands."""
@@ -183,11 +193,12 @@ class ToolFile:
         return "\n".join(lines) + "\n"
 
     def adopt(self, text: str) -> None:
-        """``text`` is what the file holds now."""
-        self.lines = text.splitlines()
-        self._line_of = {
-            tool.toolno: number for number, line in enumerate(self.lines) if (tool := parse_line(line)) is not None
-        }
+        """``text``, rendered from these lines, is what the file holds now."""
+        before, self.lines = len(self.lines), text.splitlines()
+        for number in range(before, len(self.lines)):
+            tool = parse_line(self.lines[number])
+            if tool is not None:
+                self._line_of[tool.toolno] = number
 
 
 def replace_file(path: Path, text: str) -> None:

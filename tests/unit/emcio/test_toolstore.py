@@ -5,7 +5,6 @@ import pytest
 from emcio.toolstore import ToolStore
 from emcio.tooltable import Tool
 from nml.emc.tooltable import EMC_TOOL_TABLE
-from nml.errors import ConfigError
 
 TOOLS = [Tool(toolno=1, pocketno=17, diameter=1.0), Tool(toolno=5, pocketno=3, diameter=5.0)]
 
@@ -75,26 +74,32 @@ def test_reloading_gives_the_tool_in_the_spindle_its_new_values():
 
 
 @pytest.mark.parametrize(
-    ("random", "tools", "complaint"),
+    ("random", "tool", "complaint"),
     [
-        (False, [Tool(toolno=0, pocketno=1)], "T0"),
-        (True, [Tool(toolno=1, pocketno=1001)], "P1001"),
-        (True, [Tool(toolno=1, pocketno=2), Tool(toolno=2, pocketno=2)], "pocket 2 holds T1 already"),
+        (False, Tool(toolno=0, pocketno=1), "T0 is left out"),
+        (True, Tool(toolno=8, pocketno=1001), "T8 P1001 is left out"),
+        (True, Tool(toolno=8, pocketno=17), "T8 is left out: pocket 17 holds T1 already"),
     ],
 )
-def test_a_table_that_does_not_suit_the_changer_is_refused_and_nothing_changes(random, tools, complaint):
-    store = make(random)
-    with pytest.raises(ConfigError, match=complaint):
-        store.load(tools)
+def test_a_tool_that_does_not_suit_the_changer_is_left_out_with_a_reason(random, tool, complaint):
+    store = ToolStore(random)
+    remarks = store.load([*TOOLS, tool])
+    assert len(remarks) == 1
+    assert remarks[0].startswith(complaint)
     assert store.index_of(5) > 0
 
 
 def test_a_thousand_pockets_fit_and_one_more_does_not():
     store = ToolStore(random=False)
-    store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1001)])
+    assert store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1001)]) == []
     assert store.index_of(1000) == 1000
-    with pytest.raises(ConfigError, match="more than 1000"):
-        store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1002)])
+    assert len(store.load([Tool(toolno=n, pocketno=n) for n in range(1, 1002)])) == 1
+
+
+def test_a_random_changer_starts_with_the_tool_of_pocket_zero_in_its_spindle():
+    store = ToolStore(random=True)
+    store.load([Tool(toolno=4, pocketno=0, diameter=4.0), *TOOLS])
+    assert (store.in_spindle, store.index_of(4)) == (4, 0)
 
 
 def test_the_published_message_tells_what_the_store_holds():

@@ -71,12 +71,13 @@ def test_a_formatted_line_reads_back_as_the_same_tool():
         ("T1 P1\nT1 P2", "2: T1 is in line 1 already"),
     ],
 )
-def test_a_wrong_line_is_named_with_file_line_and_remedy(tmp_path, line, complaint):
+def test_a_wrong_line_is_left_out_and_named_with_file_line_and_remedy(tmp_path, line, complaint):
     path = tmp_path / "tool.tbl"
-    path.write_text(line)
-    with pytest.raises(ConfigError) as caught:
-        ToolFile(path)
-    assert str(caught.value).startswith(f"{path}:{complaint}")
+    path.write_text(line + "\nT9 P9\n")
+    table = ToolFile(path)
+    assert [remark for remark in table.remarks if remark.startswith(f"{path}:{complaint}")]
+    assert table.tools[-1].toolno == 9
+    assert table.render(table.tools) == line + "\nT9 P9\n"
 
 
 def test_a_missing_file_is_named(tmp_path):
