@@ -4,7 +4,7 @@
     nmlsend EMC_TASK_PLAN_EXECUTE command="G0 X1"
     nmlsend EMC_TRAJ_SET_G92 origin=1,2,3,0,0,0,0,0,0
 
-Exit code 0: done; 1: the command failed; 2: it could not be sent; 3: no answer in time.
+Exit code 0: done; 1: the command failed; 2: it could not be sent; 3: not done in time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import sys
 from nml import clock
 from nml.channel import Channel
 from nml.config import NmlConfig
-from nml.emc import EMC_STAT
 from nml.emc.constants import RCS_STATUS
 from nml.errors import PyemcError
 from nml.message import Message, Status
@@ -62,26 +61,31 @@ def send(config: NmlConfig, message: Message, arguments: argparse.Namespace) -> 
             result = wait_for_answer(status, number, arguments.timeout)
             while (text := texts.read()) is not None:
                 print(*(value for _, value in flat(text) if isinstance(value, str) and value), file=sys.stderr)
-    if result is None:
-        print(f"{type(message).__name__} number {number}: no answer within {arguments.timeout} s", file=sys.stderr)
+    if result in (None, RCS_STATUS.RCS_EXEC):
+        what = "no answer" if result is None else "taken, but not done"
+        print(f"{type(message).__name__} number {number}: {what} within {arguments.timeout} s", file=sys.stderr)
         return 3
+    assert result is not None
     print(f"{type(message).__name__} number {number}: {result.name.removeprefix('RCS_').lower()}")
     return 0 if result is RCS_STATUS.RCS_DONE else 1
 
 
 def wait_for_answer(status: Channel, number: int, timeout: float) -> RCS_STATUS | None:
-    """How the command ended; None if it has not within ``timeout`` s of host time."""
+    """How the command ended; within ``timeout`` s of host time RCS_EXEC if it was only taken, None if not even that."""
+    reached = None
     end = clock.host_now() + timeout
     while (left := end - clock.host_now()) > 0.0:
         answer = status.read()
-        if not isinstance(answer, (Status, EMC_STAT)):
+        if not isinstance(answer, Status):
             status.wait(left)
             continue
         if answer.echo_serial_number > number:
             return RCS_STATUS.RCS_DONE
         if answer.echo_serial_number == number and answer.status in (RCS_STATUS.RCS_DONE, RCS_STATUS.RCS_ERROR):
             return RCS_STATUS(answer.status)
-    return None
+        if answer.echo_serial_number == number:
+            reached = RCS_STATUS.RCS_EXEC
+    return reached
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:

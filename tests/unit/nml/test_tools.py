@@ -141,6 +141,15 @@ def test_a_failed_command_brings_the_operators_texts(config: NmlConfig, capsys: 
     assert capsys.readouterr() == ("EMC_TASK_SET_STATE number 1: error\n", "can't do that\n")
 
 
+def test_a_command_that_goes_on_is_told_apart_from_one_that_nobody_took(
+    config: NmlConfig, capsys: pytest.CaptureFixture[str]
+):
+    task = answer(config, status=2)
+    assert nmlsend.main(["EMC_TASK_SET_STATE", "--timeout", "1.0"]) == 3
+    task.join()
+    assert "EMC_TASK_SET_STATE number 1: taken, but not done within 1.0 s" in capsys.readouterr().err
+
+
 def test_no_answer_is_told_apart_from_a_refusal(config: NmlConfig, capsys: pytest.CaptureFixture[str]):
     assert nmlsend.main(["EMC_NULL", "--timeout", "0.05"]) == 3
     assert nmlsend.main(["EMC_NULL", "--timeout", "0"]) == 0
