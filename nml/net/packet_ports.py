@@ -12,13 +12,13 @@ import os
 import select
 import socket
 from collections import OrderedDict
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 
 from nml.clock import host_now
 from nml.net import wire
 from nml.net.protocol import Session
 from nml.net.serial_line import Unframer, frame, open_line
-from nml.net.served import Desk, Shelf
+from nml.net.served import Desk
 from nml.net.streams import Loop
 from nml.net.wire import CmsStatus, Request
 
@@ -46,8 +46,8 @@ class Peer:
 class Peers:
     """Answers packets, for clients that are told apart by address and token."""
 
-    def __init__(self, shelf: Shelf, largest: int = wire.LARGEST_UDP) -> None:
-        self._shelf = shelf
+    def __init__(self, make_desk: Callable[[], Desk], largest: int = wire.LARGEST_UDP) -> None:
+        self._make_desk = make_desk
         self._largest = largest
         self._peers: OrderedDict[Hashable, Peer] = OrderedDict()
 
@@ -89,7 +89,7 @@ class Peers:
             self._peers.pop(key).desk.close()
         if len(self._peers) >= PEERS:
             self._peers.popitem(last=False)[1].desk.close()
-        peer = self._peers[key] = Peer(self._shelf.desk())
+        peer = self._peers[key] = Peer(self._make_desk())
         return peer
 
     def close(self) -> None:
@@ -102,9 +102,9 @@ class Peers:
 class UdpPort:
     """The server's UDP socket."""
 
-    def __init__(self, address: tuple[str, int], loop: Loop, shelf: Shelf) -> None:
+    def __init__(self, address: tuple[str, int], loop: Loop, make_desk: Callable[[], Desk]) -> None:
         self._loop = loop
-        self._peers = Peers(shelf)
+        self._peers = Peers(make_desk)
         family = socket.AF_INET6 if ":" in address[0] else socket.AF_INET
         self._sock = socket.socket(family, socket.SOCK_DGRAM)
         try:
@@ -139,9 +139,9 @@ class UdpPort:
 class SerialPort:
     """The server's end of a serial line."""
 
-    def __init__(self, device: str, baud: int, loop: Loop, shelf: Shelf) -> None:
+    def __init__(self, device: str, baud: int, loop: Loop, make_desk: Callable[[], Desk]) -> None:
         self._loop = loop
-        self._peers = Peers(shelf, wire.LARGEST_FRAME)
+        self._peers = Peers(make_desk, wire.LARGEST_FRAME)
         self._port = open_line(device, baud)
         self._fd: int = self._port.fileno()
         os.set_blocking(self._fd, False)

@@ -48,6 +48,8 @@ class RemoteBuffer:
         self.closed = False
         self.last = 0
         """Id of the message that was read or peeked last."""
+        self.last_time_ns = 0
+        """When it was written: not known at this end."""
 
     # Messages
 
@@ -72,12 +74,18 @@ class RemoteBuffer:
     def _take(self, consume: bool) -> bytearray | None:
         self._check_open()
         queue = self.link.line.queue
-        status, message_id, _, body = self.link.fetch(consume, 0 if queue else self.last)
+        takes = consume and not (self.link.process.observer and self._shared)
+        status, message_id, _, body = self.link.fetch(takes, 0 if queue else self.last)
         self._check(status, "read")
         if status != CmsStatus.READ_OK or (not queue and message_id == self.last):
             return None
         self.last = message_id
         return self._image(body)
+
+    @property
+    def _shared(self) -> bool:
+        """Whether a read changes what others find: not in a broadcast queue of our own server."""
+        return not (self.link.line.broadcast and isinstance(self.link.form, Native))
 
     def _image(self, body: bytes) -> bytearray:
         form = self.link.form
@@ -201,14 +209,14 @@ class RemoteChannel(Channel):
         self._may_write = process.may_write
         self._codec = None
         self.raw = RemoteBuffer(link)  # type: ignore[assignment]
-        self._let_go = weakref.finalize(self, link.close)
+        self._finalizer = weakref.finalize(self, link.close)
         if process.may_read:
             self.poll_into = self.raw.poll_into
 
     def close(self) -> None:
         """Let go of the link."""
         self.raw.close()
-        self._let_go()
+        self._finalizer.detach()
 
     @property
     def address(self) -> int:

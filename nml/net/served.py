@@ -8,7 +8,9 @@ to a broadcast queue, in which every client reads everything. Whatever can fail 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from nml import _shm
 from nml._buffer import Buffer
@@ -22,6 +24,8 @@ from nml.net.forms import Form, Kind, form, vocabulary_checksum
 from nml.net.passwords import PasswordFile
 from nml.net.wire import BODY_FACTOR, MASK, CmsStatus, Request
 
+LOCK_TIMEOUT = 0.05
+"""s that a write waits for a process that holds the buffer; other clients wait with it."""
 SAME_ID = 0x4000_0000
 """Set in the id of a queued message that a client would otherwise take for its last one."""
 
@@ -148,11 +152,7 @@ class SlotView:
             return 0, CmsStatus.PERMISSIONS_ERROR
         raw = self._raw
         try:
-            message = self._form.decode(body)
-            if raw.longest < message.SIZE:
-                return raw.write_counter, CmsStatus.INSUFFICIENT_SPACE_ERROR
-            numbered = self._served.line.serial and isinstance(message, Command)
-            number = raw.write(message.data, numbered, only_if_read)
+            number = self._served.write(raw, self._form.decode(body), only_if_read)
         except NmlError as error:
             return raw.write_counter, _status_of(error)
         if not number:
@@ -257,8 +257,8 @@ def _status_of(error: NmlError) -> int:
 class Desk:
     """One client's place: which form of messages it takes, where it has logged in, which buffers it has open."""
 
-    def __init__(self, shelf: Shelf) -> None:
-        self._shelf = shelf
+    def __init__(self, buffers: Mapping[int, ServedBuffer]) -> None:
+        self._buffers = buffers
         self._views: dict[int, SlotView] = {}
         self.kind = Kind.CODED
         self.logged_in: set[PasswordFile] = set()
@@ -267,7 +267,7 @@ class Desk:
         """The client's access to a buffer; None if the server does not have it."""
         view = self._views.get(number)
         if view is None:
-            served = self._shelf.buffers.get(number)
+            served = self._buffers.get(number)
             if served is None:
                 return None
             view = self._views[number] = _VIEWS[served.raw.kind](served, self)
@@ -290,31 +290,55 @@ class Desk:
 
 
 class Shelf:
-    """Every buffer that one server process serves, by its number on the wire."""
+    """Every buffer that one server process serves, by the link and the number under which clients know it."""
 
     def __init__(self, config: NmlConfig, process: str) -> None:
-        self.buffers: dict[int, ServedBuffer] = {}
+        self.links: dict[WireLink, dict[int, ServedBuffer]] = {}
+        self._served: list[ServedBuffer] = []
         users: dict[Path, PasswordFile] = {}
         try:
             for line, process_line in served_lines(config, process):
-                other = self.buffers.get(line.number)
-                if other is not None:
-                    message = f"buffer {line.name} has number {line.number}, which {other.line.name} has already"
-                    raise ConfigError(message, line.place)
                 if line.subdivisions > 1:
                     raise ConfigError(f"buffer {line.name}: subdiv={line.subdivisions} is not served", line.place)
-                self.buffers[line.number] = ServedBuffer(line, process_line, _users(config, line, users))
+                patient = replace(process_line, timeout=LOCK_TIMEOUT)
+                served = ServedBuffer(line, patient, _users(config, line, users))
+                self._served.append(served)
+                for link in links_of(line):
+                    self._place(served, self.links.setdefault(link, {}), link)
         except BaseException:
             self.close()
             raise
 
-    def desk(self) -> Desk:
-        """A place for a new client."""
-        return Desk(self)
+    @staticmethod
+    def _place(served: ServedBuffer, buffers: dict[int, ServedBuffer], link: WireLink) -> None:
+        number = served.line.number
+        if number in buffers:
+            other = buffers[number].line.name
+            message = f"buffer {served.line.name} has number {number}, as {other} on {link.kind}={link.where}"
+            raise ConfigError(message, served.line.place)
+        buffers[number] = served
+
+    def desk(self, link: WireLink) -> Desk:
+        """A place for a new client of a link."""
+        return Desk(self.links[link])
 
     def close(self) -> None:
-        for served in self.buffers.values():
+        """Let go of the buffers."""
+        for served in self._served:
             served.close()
+
+
+class WireLink(NamedTuple):
+    """Where clients find buffers: an option of B lines and its value, a port or a device."""
+
+    kind: str
+    where: int | str
+
+
+def links_of(line: BufferLine) -> list[WireLink]:
+    """The links that a B line asks for."""
+    wanted = (("TCP", line.tcp), ("STCP", line.stcp), ("UDP", line.udp), ("serialPortDevName", line.serial_port))
+    return [WireLink(kind, where) for kind, where in wanted if where is not None]
 
 
 def served_lines(config: NmlConfig, process: str) -> Iterator[tuple[BufferLine, ProcessLine]]:
@@ -324,7 +348,7 @@ def served_lines(config: NmlConfig, process: str) -> Iterator[tuple[BufferLine, 
         process_line = own.get(line.name) or own.get(ANY_BUFFER)
         if process_line is None or not process_line.server or process_line.type is ProcessType.REMOTE:
             continue
-        if any((line.tcp, line.udp, line.stcp, line.serial_port)):
+        if links_of(line):
             yield line, process_line
 
 

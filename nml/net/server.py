@@ -19,15 +19,17 @@ import select
 import signal
 import socket
 import sys
+from collections.abc import Callable
+from functools import partial
 
 from nml.clock import host_now
-from nml.config import BufferLine, NmlConfig
+from nml.config import NmlConfig
 from nml.errors import ConfigError, NmlError
 from nml.inifile import IniFile
 from nml.net.client_file import client_file
 from nml.net.packet_ports import SerialPort, UdpPort
 from nml.net.protocol import Session
-from nml.net.served import Shelf
+from nml.net.served import Desk, Shelf, WireLink
 from nml.net.stcp import TextSession
 from nml.net.streams import Connection, Limits, Listener, Release, SessionLike, Watched
 
@@ -38,6 +40,8 @@ LOOPBACK = "127.0.0.1"
 LISTEN_VARIABLE = "PYEMC_NML_LISTEN"
 _CHECK_PERIOD = 1.0
 _SPARE_FILES = 128
+_TURNS = 64
+"""Connections that may go on with what is due before others' requests are looked at again."""
 _NEVER = float("inf")
 
 
@@ -60,12 +64,12 @@ class Server:
         self._epoll = select.epoll()
         self._watched: dict[int, Watched] = {}
         self._connections: dict[Connection, None] = {}
-        self._followed: set[Connection] = set()
+        self._followed: dict[Connection, None] = {}
         self._stopping = False
         self._next_check = host_now() + _CHECK_PERIOD
         self._shelf = Shelf(config, process)
         try:
-            if not self._shelf.buffers:
+            if not self._shelf.links:
                 raise ConfigError(f"{config.path}: process {process} has no buffer to serve with a TCP= or other link")
             self._open_links(listen, optional)
         except BaseException:
@@ -73,39 +77,28 @@ class Server:
             raise
 
     def _open_links(self, listen: str, optional: bool) -> None:
-        opened: set[tuple[str, int | str]] = set()
-        for line in [served.line for served in self._shelf.buffers.values()]:
-            for kind, where in _links_of(line):
-                if (kind, where) in opened:
-                    continue
-                try:
-                    self._open_link(kind, where, listen, line)
-                except OSError as error:
-                    reason = error.strerror or str(error)
-                    message = f"buffer {line.name}: cannot serve {kind}={where}: {reason}"
-                    if not optional:
-                        raise ConfigError(message, line.place) from None
-                    log.warning("%s: %s; nobody can connect there", line.place, message)
-                opened.add((kind, where))
+        for link, buffers in self._shelf.links.items():
+            line = next(iter(buffers.values())).line
+            try:
+                self._open_link(link, listen, line.baud)
+            except OSError as error:
+                reason = error.strerror or str(error)
+                message = f"buffer {line.name}: cannot serve {link.kind}={link.where}: {reason}"
+                if not optional:
+                    raise ConfigError(message, line.place) from None
+                log.warning("%s: %s; nobody can connect there", line.place, message)
 
-    def _open_link(self, kind: str, where: int | str, listen: str, line: BufferLine) -> None:
-        match kind, where:
-            case "TCP", int(port):
-                Listener((listen, port), self, self._tcp_session)
-            case "STCP", int(port):
-                Listener((listen, port), self, self._text_session)
-            case "UDP", int(port):
-                UdpPort((listen, port), self, self._shelf)
-            case "serialPortDevName", str(device):
-                SerialPort(device, line.baud, self, self._shelf)
-
-    def _tcp_session(self) -> tuple[SessionLike, Release]:
-        desk = self._shelf.desk()
-        return Session(desk), desk.close
-
-    def _text_session(self) -> tuple[SessionLike, Release]:
-        desk = self._shelf.desk()
-        return TextSession(desk), desk.close
+    def _open_link(self, link: WireLink, listen: str, baud: int) -> None:
+        make_desk = partial(self._shelf.desk, link)
+        match link:
+            case WireLink("TCP", int(port)):
+                Listener((listen, port), self, partial(_session, Session, make_desk))
+            case WireLink("STCP", int(port)):
+                Listener((listen, port), self, partial(_session, TextSession, make_desk))
+            case WireLink("UDP", int(port)):
+                UdpPort((listen, port), self, make_desk)
+            case WireLink("serialPortDevName", str(device)):
+                SerialPort(device, baud, self, make_desk)
 
     # The loop, and what its members ask of it (``streams.Loop``)
 
@@ -138,12 +131,19 @@ class Server:
         return len(self._connections)
 
     def _go_on(self, now: float) -> None:
+        """Give some of the connections their turn, the rest in the next step."""
+        turns = 0
         for connection in list(self._followed):
             due = connection.due
-            if due == _NEVER:
-                self._followed.discard(connection)
-            elif due <= now:
+            if due > now and due != _NEVER:
+                continue
+            del self._followed[connection]
+            if due <= now:
+                self._followed[connection] = None
                 connection.tick(now)
+                turns += 1
+                if turns == _TURNS:
+                    break
 
     def stop(self) -> None:
         """End ``run``; callable from a signal handler."""
@@ -161,7 +161,7 @@ class Server:
         self._epoll.unregister(fd)
 
     def follow(self, connection: Connection) -> None:
-        self._followed.add(connection)
+        self._followed[connection] = None
 
     def admit(self, connection: Connection) -> None:
         while len(self._connections) >= self.limits.connections:
@@ -170,7 +170,7 @@ class Server:
 
     def dismiss(self, connection: Connection) -> None:
         self._connections.pop(connection, None)
-        self._followed.discard(connection)
+        self._followed.pop(connection, None)
 
     def make_room(self) -> None:
         if self._connections:
@@ -184,10 +184,10 @@ class Server:
         self._shelf.close()
 
 
-def _links_of(line: BufferLine) -> list[tuple[str, int | str]]:
-    """The options of a B line that ask for a link."""
-    links = (("TCP", line.tcp), ("STCP", line.stcp), ("UDP", line.udp), ("serialPortDevName", line.serial_port))
-    return [(kind, where) for kind, where in links if where is not None]
+def _session(kind: Callable[[Desk], SessionLike], make_desk: Callable[[], Desk]) -> tuple[SessionLike, Release]:
+    """A session for a new client, and what to do when it is gone."""
+    desk = make_desk()
+    return kind(desk), desk.close
 
 
 class _Wakeup:

@@ -193,13 +193,13 @@ class Telnet:
         self._sock.close()
 
 
-def text_server(machine: Machine, program: str, *options: str) -> tuple[subprocess.Popen[Any], Telnet]:
+def text_server(machine: Machine, program: str) -> tuple[subprocess.Popen[Any], Telnet]:
     """A stock text server as a remote client of the machine, and a talk with it."""
     ini = machine.folder / "remote.ini"
     ini.write_text(RSH_INI.format(nml=machine.stock.file))
     port = free_port()
     process = subprocess.Popen(
-        [program, *options, "--port", str(port), *([] if options else ["--"]), "-ini", str(ini)],
+        [program, "--port", str(port), "--", "-ini", str(ini)],
         cwd=machine.folder,
         env=machine.stock.environment(),
         stdout=subprocess.DEVNULL,
@@ -237,7 +237,7 @@ def test_the_stock_linuxcncrsh_drives_the_machine(machine: Machine) -> None:
 
 @pytest.mark.skipif(not Path("/usr/bin/schedrmt").exists(), reason="Debian's schedrmt is not installed")
 def test_the_stock_scheduler_connects(machine: Machine) -> None:
-    process, talk = text_server(machine, "/usr/bin/schedrmt", "--")
+    process, talk = text_server(machine, "/usr/bin/schedrmt")
     assert "QMODE" in talk.say("get qmode", "QMODE")
     talk.close()
     process.terminate()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import socket
 import time
 from collections.abc import Iterator
@@ -11,9 +12,12 @@ from pathlib import Path
 import pytest
 
 from nml.channel import Channel
+from nml.codecs import xdr
 from nml.emc import EMC_OPERATOR_ERROR, EMC_SPINDLE_ON, EMC_STAT, EMC_TASK_PLAN_EXECUTE, EMC_TOOL_TABLE
 from nml.errors import BufferError_, ChannelTimeout, ConfigError, NmlError, QueueFull
+from nml.net import wire
 from nml.net.remote import RemoteChannel
+from nml.net.server import Server as InProcess
 from tests.support.nml_server import NullModem, Server, free_port, nml_text, running
 
 pytestmark = pytest.mark.process
@@ -310,3 +314,46 @@ def test_a_noisy_serial_line_loses_no_command_and_takes_none_twice(tmp_path: Pat
                 got.append(message.command)
             assert got == sent
             both.close()
+
+
+def test_a_port_serves_the_buffers_of_its_own_lines_only(tmp_path: Path) -> None:
+    first, second = free_port(), free_port()
+    text = nml_text(f"TCP={first}")
+    lines = [line.replace(str(first), str(second)) if "B emcCommand" in line else line for line in text.splitlines()]
+    text = "\n".join(lines)
+    with running(tmp_path, text) as server:
+        Channel(server.remote(), "emcCommand", "xemc").close()
+        crossed = "\n".join(line.replace(str(second), str(first)) for line in lines)
+        with pytest.raises(BufferError_, match="buffer number 1: the server does not have this buffer"):
+            Channel(server.remote(text=crossed), "emcCommand", "xemc")
+
+
+def test_two_buffers_of_one_number_on_a_port_are_an_error(tmp_path: Path) -> None:
+    text = nml_text(f"TCP={free_port()}").replace("0     0    2 ", "0     0    1 ", 1)
+    server = Server(tmp_path, text)
+    with pytest.raises(ConfigError, match=r"server.nml:\d+:.* emcStatus has number 1, as emcCommand on TCP="):
+        InProcess(server.config)
+
+
+def test_a_neutral_buffer_travels_as_any_other(tmp_path: Path) -> None:
+    text = nml_text(f"TCP={free_port()}")
+    lines = [re.sub(r"localhost( +)(\d+)( +)0", r"localhost\1\2\g<3>1", line, count=1) for line in text.splitlines()]
+    with running(tmp_path, "\n".join(lines)) as server:
+        both = Ends(server)
+        both.machine["emcStatus"].write(EMC_STAT(line=11))
+        assert both.client["emcStatus"].peek().line == 11
+        assert both.client["emcCommand"].write(EMC_TASK_PLAN_EXECUTE(command="G0 X1")) == 1
+        got = both.machine["emcCommand"].read()
+        assert (got.command, got.serial_number) == ("G0 X1", 1)
+        both.close()
+
+
+def test_a_stock_program_gets_exactly_the_bytes_of_the_stock_status(tcp: Ends) -> None:
+    tcp.machine["emcStatus"].write(EMC_STAT(line=11))
+    port = next(iter(tcp.server.ports))[1]
+    with socket.create_connection(("127.0.0.1", port), 5.0) as sock:
+        sock.sendall(wire.REQUEST.pack(0, wire.Request.READ, 2, wire.Access.PEEK, 0))
+        reply = sock.recv(20 + 3876, socket.MSG_WAITALL)
+        assert wire.READ_REPLY.unpack_from(reply) == (1, 2, 3876, 1, 0)
+        assert reply[20:] == xdr.encode(EMC_STAT(line=11))
+        assert reply[20:28] == bytes.fromhex("000007cf 00002a20")

@@ -37,7 +37,7 @@ def shelf() -> FakeShelf:
 
 @pytest.fixture
 def peers(shelf: FakeShelf) -> Peers:
-    return Peers(shelf, largest=200)  # type: ignore[arg-type]
+    return Peers(shelf.desk, largest=200)  # type: ignore[arg-type]
 
 
 def packet(
