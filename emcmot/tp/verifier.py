@@ -15,6 +15,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 ARC_SAMPLES = 2001
 WINDOW = 48  # primitives ahead of the last match that are tried before the whole rest of the path
+POSITION_WINDOW = 500  # positions after the last match that are tried first, then twice as many, and so on
+CHORD = 4e-3  # lu by which a polyline of positions may cut a curve
+LOST = 10.0  # tolerances beyond which the window holds no match
+LOST_WAY = 1e-3  # lu, the same where there is no tolerance
 
 
 @dataclass
@@ -103,11 +107,17 @@ def differences(positions: Array, start: Array, dt: float) -> tuple[Array, Array
 
 
 def path_deviation(positions: Array, path: list[Line | Arc], tolerance: float) -> float:
-    """Largest distance of the positions, in their order, from the path."""
+    """Largest distance of the positions, in their order, from the path.
+
+    Paths cross themselves, so a position is looked for near where the one before was found, and only if it is nowhere
+    near there in all the rest of the path.
+    """
     worst, at = 0.0, 0
     for q in positions:
         best, best_index = math.inf, at
-        for index in [*range(at, min(at + WINDOW, len(path))), *range(at + WINDOW, len(path))]:
+        for index in range(at, len(path)):
+            if index >= at + WINDOW and best <= LOST * tolerance + LOST_WAY:
+                break
             d = path[index].distance(q)
             if d < best:
                 best, best_index = d, index
@@ -118,30 +128,39 @@ def path_deviation(positions: Array, path: list[Line | Arc], tolerance: float) -
     return worst
 
 
-def corner_deviation(positions: Array, path: list[Line | Arc]) -> float:
-    """Largest distance of the programmed end points from the polyline of the positions."""
+def corner_deviation(positions: Array, path: list[Line | Arc], tolerance: float) -> float:
+    """Largest distance of the programmed end points, in their order, from the polyline of the positions."""
     worst, at = 0.0, 0
     for primitive in path:
-        d2 = np.sum((positions[at:] - primitive.end) ** 2, axis=1)
-        k = at + int(np.argmin(d2))
-        near = positions[max(0, k - 1) : k + 2]
-        nearest = math.sqrt(d2.min())
-        for i in range(len(near) - 1):
-            nearest = min(nearest, Line(near[i], near[i + 1]).distance(primitive.end))
-        worst = max(worst, nearest)
+        window = POSITION_WINDOW
+        distance, k = point_deviation(positions[at : at + window], primitive.end)
+        while distance > tolerance + CHORD and at + window < len(positions):
+            window *= 2
+            distance, k = point_deviation(positions[at : at + window], primitive.end)
+        at += max(0, k - 1) if distance <= tolerance + CHORD else 0
+        worst = max(worst, distance)
     return worst
+
+
+def point_deviation(positions: Array, point: Array) -> tuple[float, int]:
+    """Distance of a point from the polyline of the positions, and the index of the nearest of them."""
+    d2 = np.sum((positions - point) ** 2, axis=1)
+    k = int(np.argmin(d2))
+    near = positions[max(0, k - 1) : k + 2]
+    pieces = [Line(near[i], near[i + 1]).distance(point) for i in range(len(near) - 1)]
+    return min([math.sqrt(d2[k]), *pieces]), k
 
 
 def verify(
     positions: Array, path: list[Line | Arc], vmax: Array, amax: Array, dt: float, tolerance: float, stride: int = 1
 ) -> Report:
-    """Worst violations of a whole run; only every `stride`-th position is compared with the path."""
+    """Worst violations of a whole run; only every `stride`-th position and end point are compared."""
     v, a = differences(positions, path[0].start, dt)
     return Report(
         seconds=len(positions) * dt,
         velocity=np.abs(v).max(axis=0) / vmax,
         acceleration=np.abs(a).max(axis=0) / amax,
         deviation=path_deviation(positions[::stride], path, tolerance),
-        corner=corner_deviation(positions, path),
+        corner=corner_deviation(positions, path[::stride], tolerance),
         end=float(np.linalg.norm(positions[-1] - path[-1].end)),
     )
