@@ -126,3 +126,15 @@ def _short(folder):
     part = folder / "short.ngc"
     part.write_text("G21 G90 G94\nG1 X5 F3000\nM2\n")
     return part
+
+
+@pytest.mark.parametrize("victim", ["display", "halui"])
+def test_when_a_screen_dies_everything_ends_with_an_error(tmp_path, victim):
+    ini = copy_mill(tmp_path)
+    ini.write_text(ini.read_text().replace("[HAL]", "[HAL]\nHALUI = halui"))
+    with running(ini, speed=SPEED) as run:
+        run.port()
+        os.kill(run.pids()[victim], signal.SIGKILL)
+        assert run.finish() != 0
+    assert victim in run.errors
+    assert traces() == []
