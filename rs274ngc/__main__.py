@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 from typing import Any
@@ -30,6 +31,8 @@ def parser() -> argparse.ArgumentParser:
     add("-g", dest="go", action="store_true", help="go on without asking (batch mode)")
     add("-T", dest="task_init", action="store_true", help="call task_init()")
     add("-l", dest="log_level", type=int, default=-1, metavar="LEVEL", help="log level")
+    add("--stats", action="store_true", help="print extents, distances, tools and time instead of canonical calls")
+    add("--json", action="store_true", help="the same as JSON")
     add("input", nargs="?", help="program; without it, lines are read from the terminal")
     add("output", nargs="?", help="where to write (default: standard output)")
     return options
@@ -49,6 +52,17 @@ def report(error: InterpError, stack: bool) -> None:
         print(error.block, file=sys.stderr)
     if stack and error.place is not None:
         print(f"found at column {error.place.column}", file=sys.stderr)
+
+
+def show_figures(options: argparse.Namespace) -> int:
+    """``--stats`` and ``--json``."""
+    from rs274ngc import stats
+
+    tools = tooltable.load(options.tools) if options.tools else ()
+    canon = stats.geometry(options.input, read_ini(options.ini) if options.ini else None, tools=tools)
+    values = stats.figures(canon)
+    print(json.dumps(values) if options.json else stats.text(values))
+    return 0
 
 
 def type_in(interp: Interpreter, canon: PrintCanon, stack: bool) -> None:
@@ -77,6 +91,8 @@ def main(arguments: list[str] | None = None) -> int:
     errors: list[InterpError] = []
     output = 1
     try:
+        if options.input and (options.stats or options.json):
+            return show_figures(options)
         if options.output:
             output = os.open(options.output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
         canon = PrintCanon(output, tools=tooltable.load(options.tools) if options.tools else ())

@@ -12,7 +12,7 @@ from rs274ngc.canon import (
     CANON_UNITS_INCHES,
 )
 from rs274ngc.modes cimport read_spindle, send_control
-from rs274ngc.path cimport axis_words, feed, plane_axes, traverse
+from rs274ngc.path cimport axis_words, feed, plane_axes, polar_to_xy, traverse
 from rs274ngc.state cimport State, fail, fail_word
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES, EXACT_PATH = CANON_EXACT_PATH
@@ -290,6 +290,10 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
         s.canon.set_motion_control_mode(EXACT_PATH, 0.0)
     sticky_numbers(s, b, code)
     for k in range(repeats):
+        if k > 0 and s.incremental and b.words & M_POLAR:
+            b.words &= ~<unsigned int>((1 << W_X) | (1 << W_Y))
+            polar_to_xy(s, b)
+            step_x, step_y = b.value[W_X], b.value[W_Y]
         h.x += step_x
         h.y += step_y
         at_place(s, &h, h.r)

@@ -230,6 +230,7 @@ cdef class Interpreter:
             for k in range(9):
                 s.params[5061 + k] = probed[k]
             s.params[5070] = canon.get_external_probe_tripped_value()
+        if waiting & (WAIT_PROBE | WAIT_TOOL):
             position = canon.get_external_position()
             for k in range(9):
                 s.pos[k] = position[k]
@@ -519,7 +520,7 @@ cdef tuple active_g_codes(State s):
     return (
         s.line,
         s.motion,
-        s.block.g[0],
+        -1,
         {1: 170, 2: 190, 3: 180, 4: 171, 5: 191, 6: 181}[s.plane],
         {1: 420, 2: 410, 3: 400}[s.comp_side],
         200 if s.units == CANON_UNITS_INCHES else 210,
@@ -529,11 +530,11 @@ cdef tuple active_g_codes(State s):
         s.tool_offset_code,
         980 if s.retract_old_z else 990,
         {1: 611, 2: 610, 3: 640}[s.control_mode],
+        -1,
         970 if s.css[0] == 0.0 else 960,
         901 if s.ijk_absolute else 911,
         70 if s.diameter_mode else 80,
         922 if s.params[5210] == 0.0 else 923,
-        -1,
     )
 
 
@@ -544,6 +545,6 @@ cdef tuple active_m_codes(State s):
     else:
         override = 51 if s.speed_override[0] else 49
     return (
-        s.line, -1, spindle, 6 if s.current_tool else -1, 7 if s.mist else 9 if not s.flood else -1, 8 if s.flood else -1,
-        override, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, -1,
+        s.line, -1, spindle, -1, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
+        override, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, 0,
     )

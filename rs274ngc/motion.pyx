@@ -180,7 +180,7 @@ cdef int probe(State s, Block* b, int code) except -1:
     if s.feed == 0.0:
         return fail(s, "Cannot probe with zero feed rate", b.g_at[G_MOTION_GROUP])
     find_end(s, b, end)
-    if straight_length(s.pos, end) == 0.0:
+    if (code == 382 or code == 384) and straight_length(s.pos, end) == 0.0:
         return fail(s, "Start point too close to probe point", b.g_at[G_MOTION_GROUP])
     s.canon.turn_probe_on()
     s.canon.straight_probe(s.line, end[0], end[1], end[2], end[3], end[4], end[5], end[6], end[7], end[8], code - 382)

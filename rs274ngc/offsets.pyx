@@ -12,7 +12,7 @@ from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_SIDE_OFF, CANON_UNITS_INCHES
 from rs274ngc.modal cimport QUEUE_BUSTER
 from rs274ngc.path cimport axis_words, machine_to_program
-from rs274ngc.state cimport State, fail, fail_word, remember_position
+from rs274ngc.state cimport WAIT_TOOL, State, fail, fail_word, remember_position
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES
@@ -360,7 +360,7 @@ cdef int tool_length(State s, Block* b, int code) except -1:
                 value = b.value[axis_words[k]]
                 s.tool[k] = value * 0.5 if k == 0 and s.diameter_mode else value
     elif code == 430:
-        index = 0
+        index = s.tool_index if s.waiting & WAIT_TOOL else 0      # M6 or M61 on this line: not in the spindle's entry yet
         if has(b, W_H) and b.value[W_H] < 0.0:
             return fail_word(s, "Negative h word used", W_H)
         if has(b, W_H) and (b.value[W_H] != 0.0 or s.random_toolchanger):

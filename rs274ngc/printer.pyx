@@ -208,7 +208,7 @@ cdef class PrintCanon(OfflineCanon):
         self.say("SET_XY_ROTATION", f"{theta:.4f}")
 
     cpdef void use_tool_length_offset(self, double x, double y, double z, double a, double b, double c, double u, double v, double w) except *:
-        OfflineCanon.use_tool_length_offset(self, x, y, z, a, b, c, u, v, w)
+        # As with LinuxCNC's, a tool offset does not change the position that the interpreter reads back after M6.
         self.say("USE_TOOL_LENGTH_OFFSET", f"{x:.4f} {y:.4f} {z:.4f}, {a:.4f} {b:.4f} {c:.4f}, {u:.4f} {v:.4f} {w:.4f}")
 
     cpdef void use_length_units(self, int units) except *:
