@@ -170,12 +170,17 @@ def read_config(ini: IniFile) -> MachineConfig:
         program_prefix=ini.path("DISPLAY", "PROGRAM_PREFIX", ini.resolve("nc_files")),
         m_code_folders=_m_code_folders(ini),
         on_abort=ini.find("RS274NGC", "ON_ABORT_COMMAND", ""),
-        debug=ini.integer("EMC", "DEBUG", 0),
+        debug=_as_int32(ini.integer("EMC", "DEBUG", 0)),
         random_toolchanger=ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False),
         comm_timeout_s=ini.real("EMCMOT", "COMM_TIMEOUT", 1.0, minimum=0.01),
         max_axis_velocities=[axes[a].max_velocity if a in axes else UNLIMITED for a in range(9)],
         max_axis_accelerations=[axes[a].max_acceleration if a in axes else UNLIMITED for a in range(9)],
     )
+
+
+def _as_int32(mask: int) -> int:
+    """A bit mask as the C int that carries it: people write all bits as 0xFFFFFFFF."""
+    return (mask & 0xFFFFFFFF ^ 0x80000000) - 0x80000000
 
 
 def _axis_mask(ini: IniFile) -> int:
