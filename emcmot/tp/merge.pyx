@@ -17,7 +17,7 @@ cdef enum:
     LONGEST_RUN = 64             # raws in one chord
 
 cdef double SHARE = 0.5          # of the tolerance that chords may use
-cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant
+cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
 cdef double UNLIKE = 4.0         # ratio of the lengths of neighbours above which a run ends
 cdef double GROWTH = 1.3         # of one chord over the one before
 
@@ -46,7 +46,8 @@ cdef int can_join(const Segment* before, const Segment* raw) noexcept nogil:
         return 0
     for i in range(AXES):
         bend += (raw.rate[i] - before.rate[i]) * (raw.rate[i] - before.rate[i])
-    return bend < SHARPEST_JOINT * SHARPEST_JOINT
+    bend = sqrt(bend)
+    return bend < SHARPEST_JOINT or (bend < 1.0 and bend * fmin(before.length, raw.length) < raw.tolerance)
 
 
 cdef int take_segment(TpState* tp, int urgent) noexcept nogil:

@@ -56,3 +56,9 @@ def test_the_feed_of_each_move_is_kept():
     speed = np.linalg.norm(np.diff(positions[:, :3], axis=0), axis=1) / program.dt
     assert speed[positions[:-1, 0] < 9.9].max() <= 5.0 + 1e-6
     assert speed.max() > 39.0
+
+
+def test_steps_of_rounding_as_long_as_the_moves_are_smoothed_within_tolerance():
+    program = circle_of_short_moves(20, 0.03, 2, turn=0.2, tolerance=0.02)
+    report = program.check(program.run(), 0.02)
+    assert report.seconds < 1.0

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Draws the pictures of docs/planner.md with the planner itself: ``python scripts/draw_planner.py``; needs matplotlib."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from emcmot.tp.planner import Planner  # noqa: E402
+
+OUT = ROOT / "docs" / "pictures"
+DT = 0.001
+
+
+def planner(acceleration: float = 500.0) -> Planner:
+    made = Planner(DT, 4000)
+    for axis in range(3):
+        made.set_limits(axis, 100.0, acceleration)
+    return made
+
+
+def cut(points, tolerance: float, feed: float = 100.0) -> np.ndarray:
+    """Positions of a polyline."""
+    made = planner()
+    for number, point in enumerate(points, 1):
+        made.add_line(point, feed, tolerance=tolerance, id=number)
+    return made.run_to_end()
+
+
+def corner() -> Figure:
+    """One corner with three tolerances: the path, and the accelerations of both axes."""
+    figure = Figure(figsize=(11, 4.5), layout="constrained")
+    path, acceleration = figure.subplots(1, 2)
+    for tolerance in (0.05, 0.2, 0.5):
+        q = cut([(10, 0, 0), (10, 10, 0)], tolerance)
+        path.plot(q[:, 0], q[:, 1], label=f"P = {tolerance} mm")
+    path.plot([0, 10, 10], [0, 0, 10], "k:", linewidth=0.8)
+    path.set(xlim=(7.5, 10.2), ylim=(-0.2, 2.5), aspect="equal", xlabel="x, mm", ylabel="y, mm")
+    path.legend()
+    a = np.diff(q[:, :2], 2, axis=0) / DT**2
+    acceleration.plot(np.arange(len(a)) * DT, a, label=["x", "y"])
+    acceleration.set(xlabel="time, s", ylabel="acceleration, mm/s²", title="P = 0.5 mm: each axis uses its own limit")
+    acceleration.legend()
+    return figure
+
+
+def short_moves() -> Figure:
+    """Rounded coordinates: the polyline, the path that is cut, and its speed."""
+    angle = np.arange(0, 1.2, 0.0015)
+    points = np.round(np.column_stack([20 * np.sin(angle), 20 - 20 * np.cos(angle), 0 * angle]), 2)
+    q = cut(points[1:], 0.02)
+    figure = Figure(figsize=(11, 4.5), layout="constrained")
+    path, speed = figure.subplots(1, 2)
+    path.plot(points[:, 0], points[:, 1], "k.-", linewidth=0.6, markersize=3, label="program, rounded to 0.01 mm")
+    path.plot(q[:, 0], q[:, 1], label="cut, P = 0.02 mm")
+    path.set(xlim=(8, 8.6), ylim=(1.65, 1.97), xlabel="x, mm", ylabel="y, mm")
+    path.legend()
+    v = np.linalg.norm(np.diff(q[:, :2], axis=0), axis=1) / DT
+    speed.plot(np.arange(len(v)) * DT, v)
+    speed.set(xlabel="time, s", ylabel="speed, mm/s", title="cut at 100 mm/s")
+    return figure
+
+
+def look_ahead() -> Figure:
+    """Speed along a wavy curve, and the accelerations: always one axis at its limit."""
+    t = 0.002 * np.arange(1, 2500)
+    r = 30 + 5 * np.sin(7 * t)
+    q = cut(np.column_stack([r * np.cos(t) - 30, r * np.sin(t), -0.5 * np.sin(3 * t)]), 0.01)
+    v = np.diff(q[:, :3], axis=0) / DT
+    a = np.diff(v, axis=0) / DT
+    figure = Figure(figsize=(11, 6), layout="constrained")
+    speed, acceleration = figure.subplots(2, 1, sharex=True)
+    speed.plot(np.arange(len(v)) * DT, np.linalg.norm(v, axis=1))
+    speed.set(ylabel="speed, mm/s")
+    acceleration.plot(np.arange(len(a)) * DT, a, linewidth=0.8, label=["x", "y", "z"])
+    acceleration.set(xlabel="time, s", ylabel="acceleration, mm/s²", ylim=(-520, 520))
+    acceleration.legend(ncols=3)
+    return figure
+
+
+def main() -> None:
+    OUT.mkdir(exist_ok=True)
+    for draw in (corner, short_moves, look_ahead):
+        draw().savefig(OUT / f"planner_{draw.__name__}.png", dpi=80)
+
+
+if __name__ == "__main__":
+    main()
