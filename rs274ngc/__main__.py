@@ -25,7 +25,8 @@ def parser() -> argparse.ArgumentParser:
     add("-t", dest="tools", metavar="TOOL.TBL", help="tool table file")
     add("-v", dest="parameters", metavar="FILE.VAR", help="parameter file")
     add("-i", dest="ini", metavar="FILE.INI", help="INI file")
-    add("-n", dest="next", type=int, choices=(CONTINUE, MDI, STOP), default=STOP, help="after an error: 0 continue, 1 enter MDI, 2 stop")
+    after_error = "after an error: 0 continue, 1 enter MDI, 2 stop"
+    add("-n", dest="next", type=int, choices=(CONTINUE, MDI, STOP), default=STOP, help=after_error)
     add("-b", dest="block_delete", action="store_true", help="skip lines that begin with a slash")
     add("-s", dest="stack", action="store_true", help="print where an error was found")
     add("-g", dest="go", action="store_true", help="go on without asking (batch mode)")
@@ -58,7 +59,7 @@ def show_figures(options: argparse.Namespace) -> int:
     """``--stats`` and ``--json``."""
     from rs274ngc import stats
 
-    tools = tooltable.load(options.tools) if options.tools else ()
+    tools = tooltable.load(options.tools) if options.tools else tooltable.DEFAULT
     canon = stats.geometry(options.input, read_ini(options.ini) if options.ini else None, tools=tools)
     values = stats.figures(canon)
     print(json.dumps(values) if options.json else stats.text(values))
@@ -95,7 +96,7 @@ def main(arguments: list[str] | None = None) -> int:
             return show_figures(options)
         if options.output:
             output = os.open(options.output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
-        canon = PrintCanon(output, tools=tooltable.load(options.tools) if options.tools else ())
+        canon = PrintCanon(output, tools=tooltable.load(options.tools) if options.tools else tooltable.DEFAULT)
         canon.block_delete = options.block_delete
         interp = Interpreter(canon, read_ini(options.ini) if options.ini else None)
         canon.state = interp.state

@@ -1,4 +1,4 @@
-"""A canon that writes down the calls instead of making them: cutter compensation holds back what follows an open corner."""
+"""A canon that writes down the calls instead of making them: compensation holds back what follows an open corner."""
 
 from __future__ import annotations
 

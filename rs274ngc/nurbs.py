@@ -14,7 +14,9 @@ def knot_vector(count: int, order: int) -> list[float]:
     return [0.0] * order + [float(k) for k in range(1, spans)] + [float(spans)] * order
 
 
-def point(control: Sequence[tuple[float, float, float]], order: int, knots: Sequence[float], t: float) -> tuple[float, float]:
+def point(
+    control: Sequence[tuple[float, float, float]], order: int, knots: Sequence[float], t: float
+) -> tuple[float, float]:
     """The curve at parameter ``t``, by de Boor's recursion on homogeneous coordinates."""
     span = order - 1
     while span < len(control) - 1 and t >= knots[span + 1]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rs274ngc.canon import CANON_CLOCKWISE, CANON_SIDE_OFF, CANON_STOPPED, CANON_UNITS_INCHES
+from rs274ngc.canon import CANON_CLOCKWISE, CANON_STOPPED, CANON_UNITS_INCHES
 
 VERSION_MAJOR, VERSION_MINOR = 2.10, 0.0
 PLANE_CODES = {1: 170, 2: 190, 3: 180, 4: 171, 5: 191, 6: 181}
@@ -66,6 +66,4 @@ ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
     ("_task", "1 in the machine's task, 0 in a preview", lambda s: s.canon.is_task),
 )
 
-PREDEFINED: dict[str, Callable[[Any], float]] = {
-    name: (lambda s, value=value: float(value(s))) for name, _, value in ROWS
-}
+PREDEFINED: dict[str, Callable[[Any], float]] = {name: value for name, _, value in ROWS}

@@ -8,6 +8,14 @@ from pathlib import Path
 from nml.errors import ConfigError, Place
 from rs274ngc.canon import AXES, Tool
 
+DEFAULT = (
+    Tool(1, 1, (0.0, 0.0, 0.511) + (0.0,) * 6, 0.125),
+    Tool(2, 2, (0.0, 0.0, 0.1) + (0.0,) * 6, 0.0625),
+    Tool(3, 3, (0.0, 0.0, 1.273) + (0.0,) * 6, 0.201),
+    Tool(99999, 123, (0.0, 0.0, 0.1) + (0.0,) * 6, 0.0),
+)
+"""The tools that ``rs274`` has without ``-t``: those of LinuxCNC's common simulator table, inches."""
+
 WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+))")
 
 

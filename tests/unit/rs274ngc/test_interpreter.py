@@ -1,0 +1,135 @@
+"""The interpreter as its drivers see it: places of errors, limits, parameters on disk, MDI, several at once."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from nml.errors import ConfigError, InterpError
+from rs274ngc import stats, varfile
+from rs274ngc.codes import TABLE
+from rs274ngc.geometry import ARC
+from rs274ngc.interp import INTERP_EXECUTE_FINISH, INTERP_EXIT, INTERP_OK, Interpreter
+from rs274ngc.offline import OfflineCanon
+
+
+@pytest.fixture
+def interp():
+    interp = Interpreter(OfflineCanon())
+    interp.init()
+    return interp
+
+
+def test_an_error_names_file_line_and_column(interp, tmp_path):
+    program = tmp_path / "wrong.ngc"
+    program.write_text("g0 x1\n  g0 y2 q3\n")
+    interp.open(program)
+    with pytest.raises(InterpError) as caught:
+        interp.run_file()
+    place = caught.value.place
+    assert (place.file, place.line, place.column) == (str(program), 2, 9)
+    assert caught.value.message.startswith("Q word with no G5")
+    assert caught.value.block == "  g0 y2 q3"
+
+
+def test_an_error_in_a_subroutine_leaves_the_call(interp, tmp_path):
+    program = tmp_path / "call.ngc"
+    program.write_text("o1 sub\ng0 x[1/0]\no1 endsub\no1 call\ng0 y7\nm2\n")
+    interp.open(program)
+    with pytest.raises(InterpError, match="divide by zero"):
+        interp.run_file()
+    assert interp.call_level == 0
+    interp.run_file()
+    assert interp.state.position[1] == 7.0
+
+
+def test_endless_recursion_is_refused(interp, tmp_path):
+    program = tmp_path / "deep.ngc"
+    program.write_text("o1 sub\no1 call\no1 endsub\no1 call\nm2\n")
+    interp.open(program)
+    with pytest.raises(InterpError, match="Too many subroutine levels"):
+        interp.run_file()
+
+
+@pytest.mark.parametrize("text", ["g0 x" + "[" * 200, "g0 x" + "-" * 200 + "1", "#" * 200 + "1=1"])
+def test_deep_nesting_is_refused(interp, text):
+    with pytest.raises(InterpError):
+        interp.execute_mdi(text)
+
+
+def test_an_endless_loop_returns_to_its_driver_after_every_line(interp, tmp_path):
+    program = tmp_path / "loop.ngc"
+    program.write_text("o1 while [1]\no1 endwhile\nm2\n")
+    interp.open(program)
+    for _ in range(1000):
+        assert interp.read() == INTERP_OK
+        assert interp.execute() == INTERP_OK
+
+
+def test_a_line_that_is_too_long_is_refused_and_the_next_is_read(interp, tmp_path):
+    program = tmp_path / "long.ngc"
+    program.write_text("g0 x1" + " " * 300 + "\ng0 y3\nm2\n")
+    interp.open(program)
+    with pytest.raises(InterpError, match="Command too long"):
+        interp.run_file()
+    assert interp.run_file() == INTERP_EXIT
+    assert interp.state.position[1] == 3.0
+
+
+def test_probing_asks_for_a_standing_machine(interp):
+    assert interp.execute_mdi("f100 g38.2 z-5") == INTERP_EXECUTE_FINISH
+    interp.synch()
+    assert interp.parameter(5063) == -5.0
+
+
+def test_active_codes_follow_the_program(interp):
+    interp.execute_mdi("g20 g18 g91 g55 f7 m3 s12 m8")
+    codes = interp.active_g_codes()
+    assert {180, 200, 910, 550, 940} <= set(codes)
+    assert len(codes) == 17
+    assert interp.active_m_codes()[2] == 3
+    assert interp.active_settings()[1:3] == (7.0, 12.0)
+
+
+def test_interpreters_do_not_share_anything(interp):
+    other = Interpreter(OfflineCanon())
+    other.init()
+    interp.execute_mdi("#<_shared>=1")
+    with pytest.raises(InterpError):
+        other.execute_mdi("g0 x#<_shared>")
+
+
+def test_parameters_survive_on_disk_with_their_backup(interp, tmp_path):
+    path = tmp_path / "machine.var"
+    interp.execute_mdi("g10 l2 p2 x12")
+    interp.save_parameters(path)
+    first = path.read_text()
+    interp.execute_mdi("g10 l2 p2 x13")
+    interp.save_parameters(path)
+    assert Path(f"{path}.bak").read_text() == first
+    fresh = Interpreter(OfflineCanon())
+    fresh.load_parameters(path)
+    assert fresh.parameter(5241) == pytest.approx(interp.parameter(5241), abs=1e-6)
+    assert os.listdir(tmp_path) == ["machine.var", "machine.var.bak"] or len(os.listdir(tmp_path)) == 2
+
+
+def test_a_parameter_file_out_of_order_is_refused(tmp_path):
+    path = tmp_path / "wrong.var"
+    path.write_text("5220 1\n5161 0\n")
+    with pytest.raises(ConfigError, match=r"wrong.var:2: Parameter file out of order"):
+        varfile.load(path, 5603)
+
+
+def test_geometry_follows_an_arc_within_the_chord_error(tmp_path):
+    program = tmp_path / "arc.ngc"
+    program.write_text("g21 f100\ng0 x10\ng3 x-10 i-10\nm2\n")
+    canon = stats.geometry(program, chord_error=0.01)
+    arc = canon.moves[canon.kinds == ARC]
+    assert abs((arc[:, 0] ** 2 + arc[:, 1] ** 2) ** 0.5 - 10.0).max() < 1e-9
+    assert stats.figures(canon)["distance_mm"]["arc"] == pytest.approx(31.4159, abs=0.02)
+    assert set(canon.lines[canon.kinds == ARC]) == {3}
+
+
+def test_every_code_has_a_summary():
+    assert len({row[0] for row in TABLE}) == len(TABLE) > 100
+    assert all(row[3] for row in TABLE)
