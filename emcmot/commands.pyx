@@ -46,6 +46,7 @@ from emcmot._messages cimport (
     MotCommand_RAPID_SCALE,
     MotCommand_RESUME,
     MotCommand_REVERSE,
+    MotCommand_RIGID_TAP,
     MotCommand_SETUP_ARC_BLENDS,
     MotCommand_SET_ACC,
     MotCommand_SET_AOUT,
@@ -136,7 +137,7 @@ from emcmot.handlers cimport (
     teleop_vector,
     unhome,
 )
-from emcmot.moves cimport clear_probe_flags, probe, set_aout, set_circle, set_dout, set_line, set_spindle_sync
+from emcmot.moves cimport clear_probe_flags, probe, rigid_tap, set_aout, set_circle, set_dout, set_line, set_spindle_sync
 from emcmot.parameters cimport set_parameters
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
@@ -337,6 +338,7 @@ command(MotCommand_SET_CIRCLE, ENABLED | COORD | MOVE, set_circle, "Queue an arc
 command(MotCommand_SET_TELEOP_VECTOR, ENABLED, teleop_vector, "Jog all axes with the velocity vector `pos`.")
 command(MotCommand_CLEAR_PROBE_FLAGS, 0, clear_probe_flags, "Forget the last probe result.")
 command(MotCommand_PROBE, ENABLED | COORD | MOVE, probe, "Queue a straight probing move (G38.n).")
+command(MotCommand_RIGID_TAP, ENABLED | COORD | MOVE, rigid_tap, "Queue a rigid tap with the spindle that the feed follows; `scale`: faster way out.")
 command(MotCommand_SET_VEL, 0, set_parameters, "Speed of the moves that name none.")
 command(MotCommand_SET_VEL_LIMIT, 0, set_parameters, "Cap on the speed of the tool tip, 0: none.")
 command(MotCommand_SET_ACC, 0, set_parameters, "Acceleration of the moves that name none.")

@@ -27,7 +27,7 @@ from emcmot.modes cimport fall_to_free, resting, set_mode, stop_all
 from emcmot.probe cimport probe_cycle
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport spindle_cycle
-from emcmot.state cimport Axis, Joint, Motion
+from emcmot.state cimport LINES, Axis, Joint, Motion
 from emcmot.status cimport fill_status
 from emcmot.synchronised cimport synchronised_cycle
 from emcmot.tp.tp cimport (
@@ -231,7 +231,7 @@ cdef void write_pins(Motion* m) noexcept nogil:
     m.in_position = m.at_rest
     m.coord_error_out = m.coord_error
     m.motion_type_out = m.tp_status.motion_type if m.mode == MotionState_COORD else 0
-    m.program_line = <int>m.tp_status.id if m.mode == MotionState_COORD else 0
+    m.program_line = m.line_of_id[m.tp_status.id & (LINES - 1)] if m.tp_status.id else 0
     m.tp_reverse_out = m.tp_status.reversing
     m.paused = m.tp_status.paused
     m.feed_upm = 0.0

@@ -77,7 +77,7 @@ cdef class Core:
         m.enable_in = 1
         m.adaptive_feed = m.feed_scale = m.rapid_scale = m.max_feed_scale = m.mm_per_unit = 1.0
         m.enables = Enables_SS | Enables_FS | Enables_FH
-        m.sync_spindle = -1
+        m.sync_spindle = m.index_spindle = -1
         m.term_cond = TermCond_BLEND
         tp_set_cycle_time(m.tp, servo_period)
         for n in range(m.max_joints):

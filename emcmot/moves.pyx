@@ -11,6 +11,7 @@ from emcmot._messages cimport (
     EMCMOT_COMMAND,
     MAX_AXES,
     MotCommandStatus_BAD_EXEC,
+    MotCommandStatus_INVALID_COMMAND,
     MotCommandStatus_INVALID_PARAMS,
     MotCommandStatus_OK,
     TermCond_STOP,
@@ -18,8 +19,8 @@ from emcmot._messages cimport (
 from emcmot.arc cimport arc_box
 from emcmot.probe cimport PROBE_OFF, PROBE_QUEUED
 from emcmot.report cimport TEXT_SIZE, report
-from emcmot.state cimport Motion
-from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TpSegment, tp_add
+from emcmot.state cimport LINES, Motion
+from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TP_TAP, TpSegment, tp_add
 from emcmot.world cimport check_box, check_end_point
 
 cdef int TYPE_TRAVERSE = 1
@@ -64,7 +65,7 @@ cdef const double* queue_end(Motion* m) noexcept nogil:
     return &m.tp_status.pos[0] if m.tp_status.done else &m.queue_end[0]
 
 
-cdef int queue(Motion* m, const TpSegment* s, const char* what) noexcept nogil:
+cdef int queue(Motion* m, const TpSegment* s, const char* what, int line) noexcept nogil:
     """Hand the segment, and the outputs that wait for a move, to the planner."""
     cdef int n
     cdef int result = tp_add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
@@ -75,8 +76,10 @@ cdef int queue(Motion* m, const TpSegment* s, const char* what) noexcept nogil:
         snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: bad geometry or speed", what, <long>s.id)
         return MotCommandStatus_INVALID_PARAMS
     m.tp_status.done = 0
-    for n in range(MAX_AXES):
-        m.queue_end[n] = s.end[n]
+    m.line_of_id[s.id & (LINES - 1)] = line
+    if s.kind != TP_TAP:
+        for n in range(MAX_AXES):
+            m.queue_end[n] = s.end[n]
     m.pending_io_set = 0
     m.pending_io.dout_mask = 0
     m.pending_io.aout_mask = 0
@@ -91,7 +94,7 @@ cdef int set_line(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     begin_segment(m, c, &s)
     if check_end_point(m, b"Linear", c.id, s.end) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    return queue(m, &s, b"linear")
+    return queue(m, &s, b"linear", c.line)
 
 
 cdef int set_circle(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
@@ -107,7 +110,7 @@ cdef int set_circle(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     arc_box(queue_end(m), &s, box_low, box_high)
     if check_end_point(m, b"Circular", c.id, s.end) != 0 or check_box(m, b"Circular", c.id, box_low, box_high) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    return queue(m, &s, b"circular")
+    return queue(m, &s, b"circular", c.line)
 
 
 cdef int probe(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
@@ -120,12 +123,27 @@ cdef int probe(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     s.wait_spindles = 0
     if check_end_point(m, b"Probe", c.id, s.end) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    result = queue(m, &s, b"probe")
+    result = queue(m, &s, b"probe", c.line)
     if result == MotCommandStatus_OK:
         m.probing = PROBE_QUEUED
         m.probe_type = c.probe_type
         m.probe_tripped = 0
     return result
+
+
+cdef int rigid_tap(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
+    """Queue a tap: in to the end point and out again, with the spindle."""
+    cdef TpSegment s
+    if m.sync_spindle < 0:
+        snprintf(report(m, -1, c.id), TEXT_SIZE, b"Rigid tap on line %ld: the feed is not synchronised with a spindle", c.id)
+        return MotCommandStatus_INVALID_COMMAND
+    begin_segment(m, c, &s)
+    s.kind = TP_TAP
+    s.motion_type = TYPE_FEED
+    s.retract_scale = c.scale if c.scale > 0.0 else 1.0
+    if check_end_point(m, b"Rigid tap", c.id, s.end) != 0:
+        return MotCommandStatus_INVALID_PARAMS
+    return queue(m, &s, b"rigid tap", c.line)
 
 
 cdef int clear_probe_flags(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:

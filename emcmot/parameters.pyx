@@ -41,6 +41,7 @@ from emcmot.state cimport Axis, Joint, Motion, Spindle
 from emcmot.tp.tp cimport tp_set_vel_limit
 from emcmot.world cimport refresh_planner_limits
 
+from nml.emc.emcmot import EMCMOT_COMMAND as CommandMessage
 from nml.emc.emcmot import MotCommand
 
 cdef enum Owner:
@@ -76,7 +77,7 @@ cdef Motion M
 
 cdef const char** RULE_TEXTS = ["a number", "a number that is not negative", "a number above 0", "not below the lower limit", "an integer"]
 OWNERS = ("joint", "axis", "spindle", "machine")
-PARAMETERS: list[tuple[str, str, str]] = []
+PARAMETERS: list[tuple[str, str, str, str]] = []   # command, of what, field of the command, what it takes
 
 
 cdef int acceptable(int rule, double value, double previous) noexcept nogil:
@@ -132,9 +133,11 @@ cdef int set_parameters(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 cdef void row(int code, int owner, int rule, void* source, size_t target) except *:
     global row_count
-    ROWS[row_count] = Row(code, owner, rule, <char*>source - <char*>&C, target)
+    cdef size_t at = <char*>source - <char*>&C
+    ROWS[row_count] = Row(code, owner, rule, at, target)
     row_count += 1
-    PARAMETERS.append((MotCommand(code).name, OWNERS[owner], RULE_TEXTS[rule].decode()))
+    field = next(f.name for f in CommandMessage.FIELDS if f.offset <= at < f.offset + f.size)
+    PARAMETERS.append((MotCommand(code).name, OWNERS[owner], field, RULE_TEXTS[rule].decode()))
 
 
 cdef void of_joint(int code, int rule, void* source, void* target) except *:

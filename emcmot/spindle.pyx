@@ -21,7 +21,7 @@ cdef void stop_spindle(Spindle* s) noexcept nogil:
     s.locked = 0
     s.orient = 0
     s.orient_state = ORIENT_NONE
-    s.reversed_by_tap = 0
+    s.tap_scale = 0.0
     s.brake = 1
 
 
@@ -70,8 +70,8 @@ cdef double wanted_speed(Motion* m, Spindle* s) noexcept nogil:
             size = fabs(s.css_maximum)
         speed = -size if s.css_factor < 0.0 or s.speed < 0.0 else size
     speed *= s.net_scale
-    if s.reversed_by_tap:
-        speed = -speed
+    if s.tap_scale != 0.0:
+        speed *= s.tap_scale
     if speed > 0.0:
         return min(max(speed, s.min_speed), s.max_speed)
     if speed < 0.0:

@@ -15,6 +15,7 @@ from emcmot.tp.tp cimport Tp, TpIo, TpStatus
 cdef enum:
     MISC_ERRORS = 64
     ERRORS = 32          # texts kept between two drains of the error ring
+    LINES = 4096         # ids remembered with their program line; a power of two above the queue's size
     COMP_POINTS = 256    # triplets of a screw compensation table
 
 cdef enum OrientState:
@@ -150,7 +151,7 @@ ctypedef struct Spindle:
     int increasing
     int orient_state
     double orient_timeout    # s left
-    int reversed_by_tap
+    double tap_scale         # 0, or minus what a tap on its way out multiplies the speed by
     # inputs
     double revs
     double speed_in          # rev/s
@@ -269,7 +270,9 @@ ctypedef struct Motion:
     int sync_spindle         # -1: moves to come are not synchronised
     double sync_revs
     int sync_velocity
+    int index_spindle        # whose index pulse was asked for, -1: none
     int wait_spindles        # mask for the next feed move
+    int32_t line_of_id[LINES]
     double queue_end[MAX_AXES]  # end point of the move queued last
     int last_move_type       # motion type of the move queued last
     int last_move_synchronised

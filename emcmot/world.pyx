@@ -213,18 +213,66 @@ cdef int check_box(Motion* m, const char* what, long move_id, const double* low,
     return 0
 
 
+cdef void joint_of_axes(Motion* m, int joint, double* row) noexcept nogil:
+    """How this joint's position changes with each axis; 0 for all where that is not fixed."""
+    cdef double joints[MAX_JOINTS]
+    cdef double pose[MAX_AXES]
+    cdef double at_zero
+    cdef int i
+    for i in range(MAX_AXES):
+        row[i] = 0.0
+        pose[i] = 0.0
+    if not m.kins.linear:
+        if m.kins.axis_of_joint[joint] >= 0:
+            row[m.kins.axis_of_joint[joint]] = 1.0
+        return
+    m.kins.inverse(m.kins, joints, pose)
+    at_zero = joints[joint]
+    for i in range(MAX_AXES):
+        pose[i] = 1.0
+        m.kins.inverse(m.kins, joints, pose)
+        pose[i] = 0.0
+        row[i] = joints[joint] - at_zero
+
+
+cdef void lower(double* axis_limits, const double* row, double joint_limit) noexcept nogil:
+    """Lower the limits of the axes that move a joint until all of them together cannot overtax it."""
+    cdef double total = 0.0
+    cdef int i
+    for i in range(MAX_AXES):
+        total += fabs(row[i]) * axis_limits[i]
+    if total <= joint_limit:
+        return
+    for i in range(MAX_AXES):
+        if row[i] != 0.0:
+            axis_limits[i] *= joint_limit / total
+
+
 cdef void refresh_planner_limits(Motion* m) noexcept nogil:
-    """Tell the planner what each axis may do; an axis that is a joint may not do more than its joint."""
-    cdef double vel, acc
+    """Tell the planner what each axis may do: what its INI section says, and no more than its joints can follow.
+
+    An axis without limits of its own takes those of the joint that it is. Where the kinematics is not linear, only such
+    joints are looked after.
+    """
+    cdef double vel[MAX_AXES]
+    cdef double acc[MAX_AXES]
+    cdef double row[MAX_AXES]
     cdef int n, i
     for i in range(MAX_AXES):
-        vel = m.axis[i].vel_limit
-        acc = m.axis[i].acc_limit
-        for n in range(m.kins.joints):
-            if m.kins.axis_of_joint[n] == i:
-                vel = min(vel, m.joint[n].vel_limit) if vel > 0.0 else m.joint[n].vel_limit
-                acc = min(acc, m.joint[n].acc_limit) if acc > 0.0 else m.joint[n].acc_limit
-        m.axis[i].vel_net = vel
-        m.axis[i].acc_net = acc
-        if vel > 0.0 and acc > 0.0:
-            tp_set_axis_limits(m.tp, i, vel, acc, 0.0)
+        vel[i] = m.axis[i].vel_limit
+        acc[i] = m.axis[i].acc_limit
+    for n in range(m.kins.joints):
+        i = m.kins.axis_of_joint[n]
+        if i >= 0 and vel[i] <= 0.0:
+            vel[i] = m.joint[n].vel_limit
+        if i >= 0 and acc[i] <= 0.0:
+            acc[i] = m.joint[n].acc_limit
+    for n in range(m.kins.joints):
+        joint_of_axes(m, n, row)
+        lower(vel, row, m.joint[n].vel_limit)
+        lower(acc, row, m.joint[n].acc_limit)
+    for i in range(MAX_AXES):
+        m.axis[i].vel_net = vel[i]
+        m.axis[i].acc_net = acc[i]
+        if vel[i] > 0.0 and acc[i] > 0.0:
+            tp_set_axis_limits(m.tp, i, vel[i], acc[i], 0.0)

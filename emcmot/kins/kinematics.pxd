@@ -22,6 +22,7 @@ ctypedef int (*KinsFunction)(const Kinematics* kins, double* joints, double* pos
 cdef struct Kinematics:
     int type                     # KinematicsType
     int joints                   # joints that it uses: 0 .. joints - 1
+    int linear                   # joints are fixed sums of axes, so that axis limits can keep the joints' limits
     int axis_of_joint[16]        # where a joint is one axis: its index; else -1
     KinsFunction forward         # joints -> pose
     KinsFunction inverse         # pose -> joints

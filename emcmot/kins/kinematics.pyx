@@ -66,12 +66,12 @@ cdef class KinematicsModule:
             raise ValueError(f"{self.name}: no forward solution for joints {list(joints)}")
         return [pose[i] for i in range(9)]
 
-    def inverse(self, pose) -> list:
-        """The joint positions of ``pose``; ValueError where there are none."""
+    def inverse(self, pose, near=None) -> list:
+        """The joint positions of ``pose``, of several solutions that which joints ``near`` have; ValueError for none."""
         cdef double j[16]
         cdef double p[9]
         _fill(p, 9, pose)
-        _fill(j, 16, ())
+        _fill(j, 16, near or ())
         if self.kins.inverse(&self.kins, j, p) != 0 or not _finite(j, self.kins.joints):
             raise ValueError(f"{self.name}: no inverse solution for pose {list(pose)}")
         return [j[i] for i in range(self.kins.joints)]
@@ -90,6 +90,12 @@ cdef bint _finite(const double* values, int size) noexcept nogil:
         if not isfinite(values[i]):
             return False
     return True
+
+
+def refuse_arguments(name: str, args: dict) -> None:
+    """For a kinematics that takes no arguments."""
+    if args:
+        raise HalError(f"{name}: unknown argument {', '.join(sorted(args))}; it takes none")
 
 
 def provide(host, module: KinematicsModule) -> None:

@@ -52,6 +52,7 @@ def create(coordinates: str | None = None, kinstype: str = "1") -> KinematicsMod
     if kind is None:
         raise HalError(f"trivkins: kinstype={kinstype}: 1, forward, inverse or both are allowed")
     module.kins.type = kind
+    module.kins.linear = 1
     module.kins.joints = len(letters)
     for index, letter in enumerate(letters):
         module.kins.axis_of_joint[index] = AXIS_LETTERS.index(letter)

@@ -215,6 +215,7 @@ class EMCMOT_COMMAND(Command, type_id=3001):
     ext_offset_vel = double(unit="lu/s")
     ext_offset_acc = double(unit="lu/s^2")
     tool_offset = struct(EmcPose, unit="lu, deg")
+    line = integer(doc="line of the program, for the pin motion.program-line; 0: none")
 
 
 class EMCMOT_JOINT_STATUS(Struct):

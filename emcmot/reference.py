@@ -1,0 +1,84 @@
+"""Writes docs/motion-reference.md from the tables that motion runs on: commands, parameters, pins.
+
+    python -m emcmot.reference > docs/motion-reference.md
+"""
+
+from __future__ import annotations
+
+from emcmot.commands import COMMANDS
+from emcmot.core import LIMITS, Core
+from emcmot.kins import trivkins
+from emcmot.parameters import PARAMETERS
+
+HEAD = """# Motion: reference
+
+Made by `python -m emcmot.reference`; the words are in [motion.md](motion.md).
+"""
+
+
+def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    return "\n".join(lines + [f"| {' | '.join(row)} |" for row in rows])
+
+
+def commands() -> str:
+    """What each EMCMOT command requires and does."""
+    rows = [
+        (f"`{name}`", str(code), ", ".join(needs) or "nothing", doc)
+        for name, code, needs, doc in sorted(COMMANDS, key=lambda row: row[1])
+    ]
+    return _table(("command", "number", "requires", "does"), rows)
+
+
+def parameters() -> str:
+    """What the SET_xxx commands set, and which values they take."""
+    rows = [(f"`{name}`", owner, f"`{field}`", takes) for name, owner, field, takes in dict.fromkeys(PARAMETERS)]
+    return _table(("command", "of each", "field of the command", "takes"), rows)
+
+
+def arguments() -> str:
+    """The arguments of `loadrt motmod` that are numbers."""
+    return _table(
+        ("argument", "default", "from", "to"),
+        [(f"`{name}`", str(default), str(low), str(high)) for name, (default, low, high) in LIMITS.items()],
+    )
+
+
+def pins() -> str:
+    """Every pin of a machine with one joint, axis and spindle; N, L and M stand for the others."""
+    core = Core(
+        trivkins.create("x"),
+        num_joints=2,
+        num_extrajoints=1,
+        num_dio=1,
+        num_aio=1,
+        num_misc_error=1,
+        unlock_joints_mask=2,
+    )
+    rows = []
+    for pin in core.pins:
+        if pin.name.startswith("joint.0.") or (pin.name.startswith("axis.") and not pin.name.startswith("axis.x.")):
+            continue
+        name = pin.name.replace("joint.1.", "joint.N.").replace("axis.x.", "axis.L.").replace("spindle.0.", "spindle.M.")
+        rows.append((f"`{name}`", pin.type, pin.direction))
+    return _table(("pin", "type", "direction"), rows)
+
+
+def text() -> str:
+    """The whole page."""
+    parts = [
+        HEAD,
+        "## Commands\n",
+        commands(),
+        "\n## Parameters\n",
+        parameters(),
+        "\n## Arguments of motmod\n",
+        arguments(),
+        "\n## Pins\n",
+        pins(),
+    ]
+    return "\n".join(parts) + "\n"
+
+
+if __name__ == "__main__":
+    print(text(), end="")
