@@ -26,10 +26,13 @@ cdef struct hal_record:
     uint32_t hash  # of the name
     char name[NAME_SIZE]
 
-cdef struct hal_item:  # a pin or a parameter
-    hal_record head
-    int64_t link  # bytes from this word to the cell in use
+# What native code reaches through a `hal_pin`. The words of a component lie side by side, so that few cache lines hold them.
+cdef struct hal_word:
+    int64_t link  # bytes from here to the cell in use: the next one, or a signal's
     hal_cell cell
+
+cdef struct hal_item:  # a pin or a parameter; its word has the same index
+    hal_record head
     hal_cell safe  # taken when the owner dies, where has_safe
     int32_t owner  # component id
     int32_t signal  # index + 1 of the signal, 0 unlinked; `link` follows from it
@@ -41,7 +44,6 @@ cdef struct hal_item:  # a pin or a parameter
 
 cdef struct hal_signal:
     hal_record head
-    hal_cell cell
     uint8_t type
 
 cdef struct hal_comp:
@@ -87,6 +89,9 @@ cdef struct hal_segment:
     uint64_t host_start
     int32_t recoveries  # times that a killed process was found to hold the mutex
     int32_t used_comps, used_pins, used_params, used_signals, used_functs, used_threads  # slots ever used
+    hal_word pin_words[MAX_PINS]
+    hal_word param_words[MAX_PARAMS]
+    hal_cell cells[MAX_SIGNALS]
     hal_comp comps[MAX_COMPS]
     hal_item pins[MAX_PINS]
     hal_item params[MAX_PARAMS]
@@ -123,10 +128,14 @@ cdef class Record:
 
 cdef class Item(Record):
     cdef hal_item* item
+    cdef hal_word* word
+
+    cdef hal_cell* cell(self) noexcept
 
 
 cdef class Signal(Record):
     cdef hal_signal* signal
+    cdef hal_cell* cell
 
 
 cdef class Comp(Record):
@@ -141,7 +150,5 @@ cdef class Thread(Record):
     cdef hal_thread* thread
 
 
-cdef class Items:
-    cdef readonly dict items
-
-    cdef Item find(self, name)
+cdef object cell_value(hal_cell* cell, int type)
+cdef int set_cell(hal_cell* cell, int type, object value) except -1

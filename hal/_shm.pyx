@@ -313,7 +313,7 @@ cdef class Segment:
 
     cdef Item _item(self, hal_item* item):
         cdef Item view = Item.__new__(Item)
-        view.segment, view.item, view.head = self, item, &item.head
+        view.segment, view.item, view.head, view.word = self, item, &item.head, word_of(self.at, item)
         return view
 
     def new_item(self, int kind, str name, int type, int dir, int owner) -> Item:
@@ -326,6 +326,7 @@ cdef class Segment:
                 &self.at.params[0].head, sizeof(hal_item), &self.at.used_params, MAX_PARAMS, "parameter")
         set_name(item.head.name, &item.head.hash, name)
         item.type, item.dir, item.owner = type, dir, owner
+        word_of(self.at, item).cell.k = 0
         point(self.at, item, 0)
         store_state(&item.head.state, 1)
         return self._item(item)
@@ -355,6 +356,7 @@ cdef class Segment:
     cdef Signal _signal(self, hal_signal* signal):
         cdef Signal view = Signal.__new__(Signal)
         view.segment, view.signal, view.head = self, signal, &signal.head
+        view.cell = &self.at.cells[signal - &self.at.signals[0]]
         return view
 
     def new_signal(self, str name, int type) -> Signal:
@@ -362,6 +364,7 @@ cdef class Segment:
             &self.at.signals[0].head, sizeof(hal_signal), &self.at.used_signals, MAX_SIGNALS, "signal")
         set_name(signal.head.name, &signal.head.hash, name)
         signal.type = type
+        self.at.cells[signal - &self.at.signals[0]].k = 0
         store_state(&signal.head.state, 1)
         return self._signal(signal)
 
@@ -462,10 +465,19 @@ def newest_first(Comp comp):
     return -comp.comp.id
 
 
+cdef hal_word* word_of(hal_segment* at, hal_item* item) noexcept nogil:
+    """The word of a pin or parameter."""
+    cdef ssize_t index = item - &at.pins[0]
+    if 0 <= index < MAX_PINS:
+        return &at.pin_words[index]
+    return &at.param_words[item - &at.params[0]]
+
+
 cdef void point(hal_segment* at, hal_item* item, int signal) noexcept nogil:
-    """Aim a pin's link word at signal number `signal` - 1, or at the pin's own cell where it is 0."""
-    cdef char* cell = <char*>&item.cell if signal == 0 else <char*>&at.signals[signal - 1].cell
-    store_link(&item.link, cell - <char*>&item.link)
+    """Aim a pin's link at signal number `signal` - 1, or at the pin's own cell where it is 0."""
+    cdef hal_word* word = word_of(at, item)
+    cdef char* cell = <char*>&word.cell if signal == 0 else <char*>&at.cells[signal - 1]
+    store_link(&word.link, cell - <char*>&word.link)
 
 
 cdef object cell_value(hal_cell* cell, int type):
@@ -539,7 +551,14 @@ cdef class Item(Record):
     @property
     def address(self) -> int:
         """What native code takes as its `hal_pin`."""
-        return <size_t>&self.item.link
+        return <size_t>&self.word.link
+
+    cdef hal_cell* cell(self) noexcept:
+        return <hal_cell*>(<char*>&self.word.link + self.word.link)
+
+    def show_same(self, Item other) -> None:
+        """Become a view of what another one shows; for subclasses."""
+        self.segment, self.head, self.item, self.word = other.segment, other.head, other.item, other.word
 
     @property
     def type(self) -> int:
@@ -571,10 +590,10 @@ cdef class Item(Record):
         return self.item.alias.decode() if self.item.alias[0] else self.name
 
     def get(self):
-        return cell_value(<hal_cell*>(<char*>&self.item.link + self.item.link), self.item.type)
+        return cell_value(self.cell(), self.item.type)
 
     def set(self, value) -> None:
-        set_cell(<hal_cell*>(<char*>&self.item.link + self.item.link), self.item.type, value)
+        set_cell(self.cell(), self.item.type, value)
 
     value = property(get, set)
 
@@ -586,7 +605,7 @@ cdef class Item(Record):
     def fall_safe(self) -> None:
         """Take the declared safe value, if there is one."""
         if self.item.has_safe:
-            (<hal_cell*>(<char*>&self.item.link + self.item.link))[0] = self.item.safe
+            self.cell()[0] = self.item.safe
 
     @property
     def signal(self):
@@ -602,7 +621,7 @@ cdef class Item(Record):
     def unlink(self) -> None:
         """Cut the pin off; it keeps the signal's last value."""
         if self.item.signal:
-            self.item.cell = (<hal_cell*>(<char*>&self.item.link + self.item.link))[0]
+            self.word.cell = self.cell()[0]
             point(self.segment.at, self.item, 0)
             self.item.signal = 0
 
@@ -615,10 +634,10 @@ cdef class Signal(Record):
         return self.signal.type
 
     def get(self):
-        return cell_value(&self.signal.cell, self.signal.type)
+        return cell_value(self.cell, self.signal.type)
 
     def set(self, value) -> None:
-        set_cell(&self.signal.cell, self.signal.type, value)
+        set_cell(self.cell, self.signal.type, value)
 
     value = property(get, set)
 
@@ -760,41 +779,3 @@ cdef class Thread(Record):
             self.thread.call[i] = <int>(funct.funct - self.segment.at.functs)
             funct.funct.users += 1
         self.thread.calls = len(functs)
-
-
-cdef class Items:
-    """Values by a component's own short names: the fast part of ``hal.component``."""
-
-    def __cinit__(self, *args, **kwargs):
-        self.items = {}
-
-    cdef Item find(self, name):
-        item = self.items.get(name)
-        if item is None:
-            raise AttributeError(f"Pin '{name}' does not exist in this component")
-        return <Item>item
-
-    def __getitem__(self, name):
-        cdef hal_item* item = self.find(name).item
-        return cell_value(<hal_cell*>(<char*>&item.link + item.link), item.type)
-
-    def __setitem__(self, name, value):
-        cdef hal_item* item = self.find(name).item
-        set_cell(<hal_cell*>(<char*>&item.link + item.link), item.type, value)
-
-    def __contains__(self, name):
-        return name in self.items
-
-    def __iter__(self):
-        return iter(self.items)
-
-    def __len__(self):
-        return len(self.items)
-
-    def keep(self, str name, Item item) -> None:
-        """Add a pin or parameter under a name."""
-        self.items[name] = item
-
-    def forget(self) -> None:
-        """The component has left: there is nothing to read any more."""
-        self.items.clear()

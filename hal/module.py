@@ -14,11 +14,11 @@ values, if they declared any.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from typing import Any
 
 from hal import _shm
-from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item, Items
+from hal._items import Items
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
 from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
 from hal.stream import Stream
 from hal.values import TYPE_NAMES
@@ -49,25 +49,21 @@ def door() -> Hal:
     return hal
 
 
-class Pin:
+class Pin(Item):
     """A pin or parameter of a component: what ``newpin`` and ``newparam`` return. ``get`` and ``set`` are native."""
 
     def __init__(self, item: Item, is_pin: bool) -> None:
-        self._item = item
+        self.show_same(item)
         self._is_pin = is_pin
-        self.get: Callable[[], Any] = item.get
-        self.set: Callable[[Any], None] = item.set
-
-    value = property(lambda self: self._item.get(), lambda self, value: self._item.set(value))
 
     def get_name(self) -> str:
-        return self._item.name
+        return self.name
 
     def get_type(self) -> int:
-        return self._item.type
+        return self.type
 
     def get_dir(self) -> int:
-        return self._item.dir
+        return self.dir
 
     def is_pin(self) -> bool:
         return self._is_pin
@@ -75,14 +71,14 @@ class Pin:
     def wait(self, value: Any, timeout: float | None = None) -> bool:
         """Wait until the pin has this value; False after ``timeout`` seconds of host time."""
         end = None if timeout is None else clock.host_now() + timeout
-        while self._item.get() != value:
+        while self.get() != value:
             if end is not None and clock.host_now() > end:
                 return False
             clock.host_sleep(0.0005)
         return True
 
     def __repr__(self) -> str:
-        return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._item.name} {TYPE_NAMES[self._item.type]}>"
+        return f"<hal.{'Pin' if self._is_pin else 'Param'} {self.name} {TYPE_NAMES[self.type]}>"
 
 
 class component(Items):

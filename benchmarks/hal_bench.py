@@ -1,0 +1,150 @@
+"""What the HAL costs, beside LinuxCNC's where Debian's package is installed: thread cycles, pins from Python.
+
+    python benchmarks/hal_bench.py [--seconds S]
+
+A thread's time is the median of its ``.time`` pin: for us ns, for LinuxCNC processor clocks, divided by the clock's
+rate. The histogram is that of a 1 kHz thread, idle and with every processor busy. Start it as root to shield LinuxCNC's
+session from others (it gets namespaces of its own and an ordinary user).
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+os.environ.setdefault("PYEMC_NAMESPACE", f"halbench{os.getpid()}")
+
+from hal.latency import begin, histogram_text
+from hal.session import Session
+
+CHECKOUT = Path(__file__).resolve().parents[1]
+LINUXCNC = shutil.which("halrun", path="/usr/bin") and os.geteuid() == 0
+SAMPLES = 400
+
+CASES = {
+    "empty thread cycle": "",
+    "one sum2": "loadrt sum2 count=1\naddf sum2.0 t\n",
+    "100 chained sum2": "loadrt sum2 count=100\n"
+    + "".join(f"net s{n} sum2.{n}.out sum2.{n + 1}.in0\n" for n in range(99))
+    + "".join(f"addf sum2.{n} t\n" for n in range(100)),
+}
+PYTHON = """
+import hal, timeit
+c = hal.component("bench")
+p = c.newpin("in", hal.HAL_FLOAT, hal.HAL_IN)
+c.ready()
+for code in ('c["in"]', 'c["in"] = 1.0', "p.get()", "p.set(1.0)"):
+    print(min(timeit.repeat(code, globals=globals(), number=200000, repeat=5)) / 0.2)
+c.exit()
+"""
+
+
+def hal_file(body: str) -> str:
+    return (
+        "loadrt threads name1=t period1=1000000\n" + body
+        + "loadrt sampler cfg=s depth=4000\nnet time t.time sampler.0.pin.0\naddf sampler.0 t\nstart\n"
+        + f"loadusr -w halsampler -n {SAMPLES}\n"
+    )  # fmt: skip
+
+
+def run(folder: Path, text: str, ours: bool) -> str:
+    """The output of a HAL file under our halrun or LinuxCNC's."""
+    path = folder / "bench.hal"
+    path.write_text(text)
+    if ours:
+        command = [sys.executable, "-m", "hal.halrun", "-f", str(path)]
+        environment = {**os.environ, "PYTHONPATH": str(CHECKOUT)}
+    else:
+        command = [*_shield(), f"cd {folder} && /usr/bin/halrun -f {path}"]
+        environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder)}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True).stdout
+
+
+def _shield() -> list[str]:
+    unshare = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
+    return [*unshare, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "sh", "-c"]
+
+
+def clocks_per_us() -> float:
+    """Rate of the processor's time stamp counter."""
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("cpu MHz"):
+            return float(line.split(":")[1])
+    return 1000.0
+
+
+def thread_time(folder: Path, body: str, ours: bool) -> float:
+    """Median time of a period in us; the sampler's own share is in it for both."""
+    values = [int(line) for line in run(folder, hal_file(body), ours).split() if line.lstrip("-").isdigit()]
+    return statistics.median(values[20:]) / (1000.0 if ours else clocks_per_us())
+
+
+def python_times(folder: Path, ours: bool) -> list[float]:
+    """us for an item's get and set, and a pin's."""
+    path = folder / "bench.py"
+    path.write_text(PYTHON)
+    if ours:
+        command, environment = [sys.executable, str(path)], {**os.environ, "PYTHONPATH": str(CHECKOUT)}
+    else:
+        command = [*_shield(), f"/usr/bin/python3 {path}"]
+        environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True)
+    return [float(line) for line in done.stdout.split()]
+
+
+def row(name: str, ours: float, theirs: float | None) -> None:
+    other = "" if theirs is None else f"{theirs:10.3f}{ours / theirs:8.2f}"
+    print(f"{name:34}{ours:10.3f}{other}", flush=True)
+
+
+def _burn(_: int) -> None:
+    while True:
+        sum(range(10000))
+
+
+def histogram(title: str, seconds: float, busy: bool) -> None:
+    """Lateness of a 1 kHz thread."""
+    from hal.capture import Capture
+
+    burners = [multiprocessing.Process(target=_burn, args=(n,), daemon=True) for n in range(os.cpu_count() or 1)]
+    for burner in burners if busy else []:
+        burner.start()
+    with Session() as session:
+        begin(session, 0, 1_000_000)
+        with Capture(session, ["latency-servo.current-error"], "servo") as capture:
+            errors = [int(values[0]) for values in capture.read(int(seconds * 1000))][1:]
+        session.teardown()
+    for burner in burners if busy else []:
+        burner.kill()
+    print(f"\n1 kHz thread, {title}: from {min(errors)} to {max(errors)} ns")
+    print("\n".join(histogram_text(errors, 20_000)))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=5.0, help="of each histogram")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o777)
+        print(f"{'us':34}{'ours':>10}{'LinuxCNC':>10}{'ratio':>8}")
+        for case, body in CASES.items():
+            row(case, thread_time(folder, body, True), thread_time(folder, body, False) if LINUXCNC else None)
+        theirs = python_times(folder, False) if LINUXCNC else [None] * 4
+        names = ("c['in']", "c['in'] = 1.0", "pin.get()", "pin.set(1.0)")
+        for case, mine, other in zip(names, python_times(folder, True), theirs, strict=True):
+            row(case, mine, other)
+    histogram("idle", options.seconds, busy=False)
+    histogram("every processor busy", options.seconds, busy=True)
+
+
+if __name__ == "__main__":
+    main()
