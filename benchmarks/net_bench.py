@@ -1,10 +1,10 @@
-"""NML over TCP: our server and LinuxCNC's in the same run, asked by the same clients; median of several runs and the worst.
+"""NML over TCP: our server and LinuxCNC's in the same run, asked by the same clients; median of the runs and the worst.
 
     python benchmarks/net_bench.py [--seconds 1.0] [--json]
 
-The stock machine runs in namespaces of its own (``tests.support.stock_machine``), and everything else beside it there. Its task
-writes a new status every millisecond; so does the stand-in behind our server. Without Debian's package, or not as
-root, only our own figures are printed.
+The stock machine runs in namespaces of its own (``tests.support.stock_machine``), and everything else beside it there.
+Its task writes a new status every millisecond; so does the stand-in behind our server. Without Debian's package, or
+not as root, only our own figures are printed.
 """
 
 from __future__ import annotations

@@ -131,7 +131,7 @@ class Session:
     def proceed(self, now: float) -> bytes:
         """Answer the requests that wait, as far as the output limit allows."""
         out = b""
-        while self._wait is None and not self.closed and len(out) < OUTPUT_LIMIT:
+        while self._inbox and self._wait is None and not self.closed and len(out) < OUTPUT_LIMIT:
             reply = self._next(now)
             if reply is None:
                 break
@@ -153,7 +153,9 @@ class Session:
         """When ``tick`` has something to do (same clock as ``now``); infinity: only after further input."""
         if self._wait is not None:
             return self._wait.due
-        return min((push.due for push in self._subscriptions.values()), default=_NEVER)
+        if not self._subscriptions:
+            return _NEVER
+        return min(push.due for push in self._subscriptions.values())
 
     def tick(self, now: float) -> bytes:
         """Messages for subscribers and the answer to a blocking read, where their time has come."""

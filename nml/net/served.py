@@ -103,6 +103,8 @@ class SlotView:
         self._served = served
         self._desk = desk
         self._kind = desk.kind
+        self._readable = served.process.may_read
+        self._guarded = served.users is not None
         self._raw = served.raw
         self._usage: diagnostics.Usage | None = None
         self._form = served.form(desk.kind)
@@ -118,7 +120,7 @@ class SlotView:
 
     @property
     def may_read(self) -> bool:
-        return self._served.process.may_read and not self.locked
+        return self._readable and not (self._guarded and self.locked)
 
     @property
     def may_write(self) -> bool:

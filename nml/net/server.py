@@ -109,9 +109,11 @@ class Server:
 
     def step(self, seconds: float) -> None:
         """Wait at most that long for something to do, and do it."""
-        due = min([connection.due for connection in self._followed], default=_NEVER)
-        timeout = min(due - host_now(), seconds)
-        for fd, events in self._epoll.poll(max(timeout, 0.0)):
+        timeout = seconds
+        if self._followed:
+            due = min(connection.due for connection in self._followed)
+            timeout = max(0.0, min(due - host_now(), seconds))
+        for fd, events in self._epoll.poll(timeout):
             owner = self._watched.get(fd)
             if owner is not None:
                 owner.ready(events)

@@ -16,7 +16,7 @@ import pytest
 
 from tests.support.machine import Run, copy_mill, wait_until
 from tests.support.nml_server import free_port, nml_text
-from tests.support.stock import StockClient, needs_module
+from tests.support.stock import DRIVE, StockClient, needs_module
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_module]
 
@@ -73,25 +73,6 @@ def machine(tmp_path: Path) -> Iterator[Machine]:
     yield one
     assert one.run.stop() in (0, 143)
 
-
-DRIVE = """
-s = linuxcnc.stat(); s.poll()
-c = linuxcnc.command(); e = linuxcnc.error_channel()
-def do(name, *args):
-    getattr(c, name)(*args)
-    result = c.wait_complete(20)
-    s.poll()
-    return result
-def until(condition, seconds=20):
-    end = time.time() + seconds
-    while not condition():
-        assert time.time() < end, 'timeout'
-        time.sleep(0.01)
-        s.poll()
-def ready():
-    do("state", linuxcnc.STATE_ESTOP_RESET); do("state", linuxcnc.STATE_ON)
-    do("home", -1); until(lambda: all(s.homed[:3]))
-"""
 
 
 def test_the_stock_module_switches_on_homes_jogs_and_moves_by_mdi(machine: Machine) -> None:

@@ -6,30 +6,12 @@ from typing import Any
 
 import pytest
 
+from tests.support.stock import DRIVE
 from tests.support.stock_machine import needs_stock_machine, session
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
 
-DRIVE = """
-import linuxcnc, subprocess
-linuxcnc.nmlfile = "client.nml"
-s = linuxcnc.stat(); c = linuxcnc.command(); e = linuxcnc.error_channel()
-def do(name, *args):
-    getattr(c, name)(*args)
-    result = c.wait_complete(20)
-    s.poll()
-    return result
-def until(condition, seconds=20):
-    end = time.monotonic() + seconds
-    s.poll()
-    while not condition():
-        assert time.monotonic() < end, 'timeout'
-        time.sleep(0.01)
-        s.poll()
-def ready():
-    do("state", linuxcnc.STATE_ESTOP_RESET); do("state", linuxcnc.STATE_ON)
-    do("home", -1); until(lambda: all(s.homed[:3]))
-"""
+OURS = "import linuxcnc, subprocess\nlinuxcnc.nmlfile = 'client.nml'\n" + DRIVE
 
 COMPARE = """
 stock = '''
@@ -50,7 +32,7 @@ out.append(json.loads(json.dumps({name: getattr(s, name) for name in theirs})))
 
 def test_our_module_switches_on_homes_and_moves_a_stock_machine() -> None:
     state, homed, moved, position, jogged, at_rest, failed, message = session(
-        DRIVE
+        OURS
         + """
 until(lambda: s.task_state == linuxcnc.STATE_ESTOP)
 out.append([s.task_state, do("state", linuxcnc.STATE_ESTOP_RESET), do("state", linuxcnc.STATE_ON), s.task_state])
@@ -78,7 +60,7 @@ out.append(do("mdi", "G1 bad")); out.append(e.poll())
 
 def test_our_module_runs_a_program_on_a_stock_machine() -> None:
     done, file, position = session(
-        DRIVE
+        OURS
         + """
 open("part.ngc", "w").write("G21 G90 F2000\\nG0 X0 Y0\\nG1 X5\\nG2 X10 Y5 I0 J5\\nM2\\n")
 ready(); do("mode", linuxcnc.MODE_AUTO); do("program_open", os.path.abspath("part.ngc"))
@@ -93,7 +75,7 @@ out.append(c.wait_complete(10)); out.append(os.path.basename(s.file)); s.poll();
 
 
 def test_our_module_sees_what_the_stock_module_sees() -> None:
-    theirs, ours = session(DRIVE + "ready(); do('mode', linuxcnc.MODE_MDI); do('mdi', 'G0 X1 Y2')\n" + COMPARE)
+    theirs, ours = session(OURS + "ready(); do('mode', linuxcnc.MODE_MDI); do('mdi', 'G0 X1 Y2')\n" + COMPARE)
     differing = {name: (value, ours[name]) for name, value in theirs.items() if not same(value, ours[name])}
     assert not differing
 
@@ -110,6 +92,6 @@ def same(stock: Any, ours: Any) -> bool:
 @pytest.mark.parametrize("options", ["POLL", "sub=0.05"])
 def test_reads_that_do_not_wait_work_with_the_stock_server(options: str) -> None:
     before, after = session(
-        DRIVE + "until(lambda: s.task_state == 1); out.append(s.task_state); ready(); out.append(s.task_state)", options
+        OURS + "until(lambda: s.task_state == 1); out.append(s.task_state); ready(); out.append(s.task_state)", options
     )
     assert (before, after) == (1, 4)

@@ -271,7 +271,7 @@ def test_a_file_without_links_is_an_error(tmp_path: Path) -> None:
 
 
 @given(st.lists(st.binary(max_size=200), max_size=20))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_random_bytes_in_random_pieces_leave_the_server_well(server: Server, pieces: list[bytes]) -> None:
     client = Raw(server)
     with contextlib.suppress(OSError):

@@ -38,7 +38,7 @@ def replies(pieces: list[bytes]) -> list[bytes]:
 
 
 @given(TRAFFIC)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_no_traffic_makes_a_session_raise_or_hold_more_than_a_request(traffic: bytes) -> None:
     one = session()
     for start in range(0, len(traffic), 64):
@@ -49,7 +49,7 @@ def test_no_traffic_makes_a_session_raise_or_hold_more_than_a_request(traffic: b
 
 
 @given(st.lists(REQUEST, max_size=8), st.integers(1, 50))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_replies_do_not_depend_on_how_the_bytes_arrive(requests: list[bytes], step: int) -> None:
     traffic = b"".join(requests)
     whole = b"".join(replies([traffic]))

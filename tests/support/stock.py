@@ -18,6 +18,26 @@ TOOL_MAP_BYTES = 16 + 1001 * 112
 
 needs_module = pytest.mark.skipif(not MODULE_FOUND, reason="Debian's linuxcnc module is not installed")
 
+DRIVE = """
+s = linuxcnc.stat(); s.poll(); c = linuxcnc.command(); e = linuxcnc.error_channel()
+def do(name, *args):
+    getattr(c, name)(*args)
+    result = c.wait_complete(20)
+    s.poll()
+    return result
+def until(condition, seconds=20):
+    end = time.monotonic() + seconds
+    s.poll()
+    while not condition():
+        assert time.monotonic() < end, 'timeout'
+        time.sleep(0.01)
+        s.poll()
+def ready():
+    do("state", linuxcnc.STATE_ESTOP_RESET); do("state", linuxcnc.STATE_ON)
+    do("home", -1); until(lambda: all(s.homed[:3]))
+"""
+"""Helpers of scripts that drive a machine, for either module."""
+
 _PRELUDE = """
 import json, sys, time
 import linuxcnc
