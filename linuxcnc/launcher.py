@@ -101,12 +101,16 @@ def _readable(path: Path) -> None:
 
 
 def _follow_display(machine: Machine) -> int:
-    """Stay up as long as the display and all other processes live."""
+    """Stay up as long as the display and all other processes live; the display's exit code."""
+    from linuxcnc.machine import MachineError
+
     display = machine.start_display()
     while display.process.poll() is None:
         machine.check()
         clock.host_sleep(POLL)
-    return abs(display.process.returncode)
+    if display.process.returncode < 0:
+        raise MachineError(display.farewell())
+    return display.process.returncode
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
