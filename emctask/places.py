@@ -5,6 +5,15 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
+CONTINUOUS, INVERSE_TIME = 640, 930
+PLANES = (170, 171, 180, 181, 190, 191)
+LENGTHS = (200, 210, 900, 910, 901, 911, 70, 80)
+FEEDS = (INVERSE_TIME, 940, 950, 980, 990)
+SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
+PATHS = (610, 611, CONTINUOUS)
+RESTORABLE = frozenset((*PLANES, *LENGTHS, *FEEDS, *SYSTEMS, *PATHS))
+"""G codes times ten that an abort brings back; motion, compensation and tool length are not modes to come back to."""
+
 
 class Modes(NamedTuple):
     """The interpreter's active codes at some place of the program."""
@@ -12,6 +21,19 @@ class Modes(NamedTuple):
     g_codes: tuple[int, ...]
     m_codes: tuple[int, ...]
     settings: tuple[float, ...]
+
+    def as_block(self) -> str:
+        """A line that brings these modes back: plane, units, distance, feed, coordinate system, path, F and S."""
+        codes = [code for code in self.g_codes[1:] if code in RESTORABLE]
+        words = [f"G{code // 10}" if code % 10 == 0 else f"G{code / 10:.1f}" for code in codes]
+        feed, speed, path, naive = self.settings[1:5]
+        if CONTINUOUS in codes:
+            words += [f"P{path:.9g}", f"Q{naive:.9g}"] if path else []
+        if feed and INVERSE_TIME not in codes:
+            words.append(f"F{feed:.9g}")
+        if speed:
+            words.append(f"S{speed:.9g}")
+        return " ".join(words)
 
 
 class Block:

@@ -54,6 +54,8 @@ class Plan:
         self.start_line = 0
         self._modal_version = -1
         self._modes = Modes((), (), ())
+        self._restore: Modes | None = None
+        """The modes where the machine was when a program was aborted; the interpreter had read on."""
         self.interpreter_code = 0
 
     # --- Programs
@@ -180,9 +182,15 @@ class Plan:
         self.interp.synch()
         self.waiting_for_synch = False
         self.must_synch = False
+        restore, self._restore = self._restore, None
+        if restore is not None and restore != self.modes:
+            self.interp.execute_mdi(restore.as_block())
 
     def abort(self) -> None:
-        """Unwind everything; the interpreter must synchronise before it is used again."""
+        """Unwind everything; the interpreter must synchronise before it is used again, with the modes of that place."""
+        place = self.canon.places.find(self.canon.motion.status.id) if self.source is Source.PROGRAM else None
+        if place is not None:
+            self._restore = place.block.modes
         self.canon.forget()
         self.interp.abort()
         self.canon.forget()

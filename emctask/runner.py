@@ -16,6 +16,7 @@ from emctask.sequencer import ExecutionError
 from nml.emc import EMC_TOOL_ABORT
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.constants import EMC_TASK_STATE_ENUM as State
 from nml.emc.emcmot import MotCommand
 from nml.errors import PyemcError
 
@@ -34,6 +35,7 @@ class Runner:
         self._pending_error = ""
         self.stepping = False
         self.ended = False
+        self._on_abort = False
         self.serial = 0
         """Serial number of the command that started what is under way; 0: nothing is."""
         self.saver = Saver(task.plan.save_parameters)
@@ -69,6 +71,10 @@ class Runner:
         if self.saver.failure:
             task.operator.error(self.saver.take_failure())
         self._synchronise_when_quiet()
+        if self._on_abort and not task.plan.must_synch and not task.plan.active:
+            self._on_abort = False
+            if task.state is State.ON and task.motion.all_homed:
+                task.mdi_queue.appendleft((task.config.on_abort, task.echo))
         if self._begin is None and task.mdi_queue and not task.plan.active and not task.paused:
             text, serial = task.mdi_queue.popleft()
             task.mdi_text = text
@@ -198,8 +204,13 @@ class Runner:
     # --- Abort
 
     def abort(self, reason: Reason) -> None:
-        """Stop everything now; interpreter, motion and io agree again as soon as motion stands."""
+        """Stop everything now; interpreter, motion and io agree again as soon as motion stands.
+
+        If something ran, [RS274NGC]ON_ABORT_COMMAND follows then, unless it was that command which was aborted.
+        """
         task = self._task
+        ran = task.plan.active or task.busy_with_program
+        ran_on_abort = task.plan.active and task.mdi_text == task.config.on_abort
         self._begin = None
         self._pending_error = ""
         self.stepping = False
@@ -214,3 +225,4 @@ class Runner:
         task.plan.abort()
         task.sequencer.abort()
         self._set(Interp.IDLE)
+        self._on_abort = ran and bool(task.config.on_abort) and not ran_on_abort

@@ -36,8 +36,13 @@ class WorldModel(MoveCanon):
         self.motion = motion
         self.io = io
         self.input_timed_out: Callable[[], bool] = lambda: False
+        self._feed_word = 0.0, 1.0  # F as programmed, and the machine units of a program unit then
         self.spindles = [SpindleState() for _ in range(MAX_SPINDLES)]
         self.set_limits(config.max_axis_velocities, config.max_axis_accelerations, config.axis_mask)
+
+    def set_feed_rate(self, rate: float) -> None:
+        self._feed_word = rate, self.coords.length(1.0)
+        MoveCanon.set_feed_rate(self, rate)
 
     def get_external_position(self) -> tuple[float, ...]:
         position = self.motion.status.carte_pos_cmd
@@ -68,8 +73,9 @@ class WorldModel(MoveCanon):
         return self.coords.units
 
     def get_external_feed_rate(self) -> float:
-        feed = self.turn_feed if self.feed_mode else self.linear_feed * 60.0
-        return feed / self.coords.length(1.0)
+        rate, factor = self._feed_word
+        now = self.coords.length(1.0)
+        return rate if factor == now else rate * factor / now
 
     def get_external_motion_control_mode(self) -> int:
         return self.motion_mode

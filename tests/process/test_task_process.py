@@ -1,0 +1,248 @@
+"""Task in a whole machine: modes, MDI, programs, stops, errors, tools, abort, as a client sees them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import linuxcnc
+from tests.support.machine import copy_mill, running, wait_until
+
+pytestmark = pytest.mark.process
+
+SPEED = 5.0
+DONE, ERROR = linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR
+TOOLS = "T1 P1 D3 Z1\nT2 P2 D6 Z-12.5\n"
+
+
+class Desk:
+    """A client that notes every text for the operator."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.stat, self.command, self.errors = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
+        self.texts: list[str] = []
+
+    def do(self, method, *arguments, timeout: float = 30.0) -> int:
+        """Give a command and wait for its end."""
+        method(*arguments)
+        result = self.command.wait_complete(timeout)
+        self.look()
+        return result
+
+    def look(self) -> linuxcnc.stat:
+        self.stat.poll()
+        while (message := self.errors.poll()) is not None:
+            self.texts.append(message[1])
+        return self.stat
+
+    def mdi(self, line: str) -> int:
+        return self.do(self.command.mdi, line)
+
+    def until(self, condition, what: str) -> None:
+        wait_until(lambda: condition(self.look()), what)
+
+    def ready(self, mode: int) -> None:
+        """On, homed, in this mode."""
+        assert self.do(self.command.state, linuxcnc.STATE_ESTOP_RESET) == DONE
+        assert self.do(self.command.state, linuxcnc.STATE_ON) == DONE
+        assert self.do(self.command.home, -1) == DONE
+        assert self.stat.homed[:3] == (1, 1, 1)
+        assert self.do(self.command.mode, mode) == DONE
+
+    def program(self, text: str) -> None:
+        """Open a program; auto mode."""
+        path = self.folder / "part.ngc"
+        path.write_text(text)
+        assert self.do(self.command.mode, linuxcnc.MODE_AUTO) == DONE
+        assert self.do(self.command.program_open, str(path)) == DONE
+
+    def run(self) -> None:
+        self.command.auto(linuxcnc.AUTO_RUN, 0)
+
+
+@pytest.fixture
+def changes() -> dict[str, str]:
+    """INI lines that a test wants otherwise."""
+    return {}
+
+
+@pytest.fixture
+def desk(tmp_path: Path, changes: dict[str, str]) -> Iterator[Desk]:
+    ini = copy_mill(tmp_path, changes=changes)
+    (tmp_path / "mill_mm.tbl").write_text(TOOLS)
+    with running(ini, speed=SPEED) as run:
+        run.port()
+        yield Desk(tmp_path)
+
+
+def x(desk: Desk) -> float:
+    return round(desk.look().position[0], 6)
+
+
+def test_commands_are_refused_with_a_reason_while_they_cannot_be_done(desk):
+    status = desk.look()
+    assert (status.task_state, status.task_mode, status.interp_state) == (1, linuxcnc.MODE_MANUAL, 1)
+    assert (status.exec_state, status.inpos, status.state, status.rapidrate) == (2, True, DONE, 1.0)
+    assert desk.mdi("G0 X1") == ERROR
+    assert "in E-stop" in desk.texts[-1]
+    assert desk.do(desk.command.state, linuxcnc.STATE_ON) == ERROR
+    assert "reset the E-stop first" in desk.texts[-1]
+    desk.ready(linuxcnc.MODE_MANUAL)
+    assert desk.mdi("G0 X1") == ERROR
+    assert "MDI mode" in desk.texts[-1]
+    assert desk.do(desk.command.jog, linuxcnc.JOG_CONTINUOUS, False, 8, 1.0) == ERROR
+    assert "axis 8 cannot be jogged" in desk.texts[-1]
+
+
+def test_mdi_lines_queue_and_run_in_order_and_feed_survives_an_abort(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    for number in range(8):
+        desk.command.mdi(f"G1 X{number % 3} F3000")
+    assert desk.command.wait_complete(30.0) == DONE
+    assert x(desk) == 1.0
+    for mode, feed in (("g94", 234.5), ("g95", 0.5)):
+        assert desk.mdi(mode) == DONE
+        assert desk.mdi(f"f{feed}") == DONE
+        assert desk.do(desk.command.abort) == DONE
+        assert desk.stat.settings[1] == feed
+
+
+def test_offsets_and_tools_show_in_the_status_and_survive_in_their_files(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    assert desk.mdi("G10 L2 P1 X5 Y6") == DONE
+    assert desk.mdi("G92 Z2") == DONE
+    assert desk.mdi("T2 M6 G43") == DONE
+    status = desk.stat
+    assert status.g5x_offset[:3] == (5.0, 6.0, 0.0)
+    assert status.g92_offset[2] == -2.0
+    assert (status.tool_in_spindle, status.pocket_prepped, status.tool_offset[2]) == (2, -1, -12.5)
+    assert (status.tool_table[0].id, status.tool_table[0].diameter) == (2, 6.0)
+    assert desk.mdi("G10 L1 P2 Z3.25") == DONE
+    assert desk.stat.tool_table[2].zoffset == 3.25
+    assert (desk.folder / "mill_mm.tbl").read_text() == "T1 P1 D3 Z1\nT2 P2 D6 Z+3.250000\n"
+    assert desk.mdi("T9") == ERROR
+    saved = desk.folder / "mill_mm.var"
+    wait_until(lambda: saved.exists() and "5221\t5.0" in saved.read_text(), "the parameters are saved")
+
+
+def test_a_program_stops_resumes_steps_and_skips_as_the_operator_wants(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F6000\nG1 X1\nM1\nX2\nM0\n/X30\nX4\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.interp_state == linuxcnc.INTERP_PAUSED, "M1")
+    assert x(desk) == 1.0
+    desk.command.auto(linuxcnc.AUTO_RESUME)
+    desk.until(lambda s: s.interp_state == linuxcnc.INTERP_PAUSED and x(desk) == 2.0, "M0")
+    assert desk.do(desk.command.auto, linuxcnc.AUTO_RESUME) == DONE
+    assert x(desk) == 4.0
+    desk.do(desk.command.set_optional_stop, 0)
+    desk.do(desk.command.set_block_delete, 0)
+    seen = []
+    desk.command.auto(linuxcnc.AUTO_STEP)
+    for _ in range(20):
+        desk.until(lambda s: s.interp_state in (linuxcnc.INTERP_PAUSED, linuxcnc.INTERP_IDLE), "the end of a step")
+        if desk.stat.interp_state == linuxcnc.INTERP_IDLE:
+            break
+        if not seen or seen[-1] != x(desk):
+            seen.append(x(desk))
+        desk.command.auto(linuxcnc.AUTO_STEP)
+        time.sleep(0.05)
+    assert seen in ([1.0, 2.0, 30.0, 4.0], [4.0, 1.0, 2.0, 30.0, 4.0])
+
+
+def test_a_pause_holds_a_dwell_and_moves_and_an_abort_agrees_with_everybody(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F600\nG1 X100\nG1 X0\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.position[0] > 2.0, "cutting")
+    desk.command.auto(linuxcnc.AUTO_PAUSE)
+    desk.until(lambda s: s.current_vel == 0.0, "the hold")
+    assert desk.stat.paused
+    assert desk.do(desk.command.mode, linuxcnc.MODE_MANUAL) == ERROR
+    held = x(desk)
+    assert desk.do(desk.command.abort) == DONE
+    assert (desk.stat.interp_state, desk.stat.paused, x(desk)) == (linuxcnc.INTERP_IDLE, False, held)
+    assert desk.do(desk.command.mode, linuxcnc.MODE_MDI) == DONE
+    assert desk.mdi("G91 G1 X1") == DONE, desk.texts
+    assert x(desk) == pytest.approx(held + 1.0)
+
+
+def test_a_wrong_line_ends_the_program_after_what_came_before_it(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F6000\nG1 X1\nX2\nG1 X3 Z\nX4\nM2\n")
+    desk.run()
+    assert desk.command.wait_complete(30.0) == ERROR
+    desk.until(lambda _: desk.texts, "the reason")
+    assert x(desk) == 2.0
+    assert desk.stat.interp_state == linuxcnc.INTERP_IDLE
+    assert desk.texts[-1].startswith(f"{desk.folder / 'part.ngc'}:4:")
+    desk.program("M2\n")
+    assert desk.do(desk.command.auto, linuxcnc.AUTO_RUN, 0) == DONE
+
+
+def test_a_move_beyond_a_limit_names_its_line_and_ends_the_program(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F6000\nG1 X1\nG1 X9999\nM2\n")
+    desk.run()
+    assert desk.command.wait_complete(30.0) == ERROR
+    desk.until(lambda _: desk.texts, "the reason")
+    assert "line 3" in desk.texts[-1]
+    assert desk.stat.interp_state == linuxcnc.INTERP_IDLE
+
+
+@pytest.mark.parametrize("changes", [{"RS274NGC.SUBROUTINE_PATH": "."}])
+def test_probing_waiting_and_subroutines_of_mdi_lines_give_the_same_result_every_time(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    (desk.folder / "twice.ngc").write_text("o<twice> sub\nG1 X[#1 * 2] F6000\nM66 P0 L3 Q0.02\no<twice> endsub\n")
+    for number in range(1, 6):
+        desk.texts.clear()
+        assert desk.mdi("G38.3 X1 F6000") == DONE
+        assert desk.mdi("M66 P1 L3 Q0.02") == DONE
+        assert desk.stat.input_timeout
+        assert desk.mdi(f"o<twice> call [{number}]") == DONE, desk.texts
+        assert x(desk) == 2.0 * number
+        assert desk.mdi("(DEBUG, #5399 #5420)") == DONE
+        assert desk.texts[-1].split() == ["-1.000000", f"{2.0 * number:.6f}"]
+    assert desk.mdi("G38.2 X50 F6000") == ERROR
+    assert "without making contact" in desk.texts[-1]
+
+
+@pytest.mark.parametrize("changes", [{"RS274NGC.SUBROUTINE_PATH": ".", "DISPLAY.PROGRAM_PREFIX": "."}])
+def test_user_m_codes_run_programs_and_their_failure_ends_the_line(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    note = desk.folder / "note"
+    for number, text in ((100, f"#!/bin/sh\necho $1 $2 > {note}\n"), (101, "#!/bin/sh\nexit 3\n")):
+        script = desk.folder / f"M{number}"
+        script.write_text(text)
+        script.chmod(0o755)
+    assert desk.mdi("M100 P1.5 Q-2") == DONE, desk.texts
+    assert note.read_text() == "1.500000 -2.000000\n"
+    assert desk.mdi("M101") == ERROR
+    assert "M101 failed with exit code 3" in desk.texts[-1]
+
+
+def test_an_estop_while_cutting_stops_everything_and_the_machine_starts_again(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F600\nM3 S100\nM8\nG1 X100\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.position[0] > 2.0, "cutting")
+    assert desk.stat.flood == 1
+    assert desk.do(desk.command.state, linuxcnc.STATE_ESTOP) == DONE
+    status = desk.stat
+    assert (status.task_state, status.task_mode, status.interp_state) == (1, linuxcnc.MODE_MANUAL, 1)
+    desk.until(lambda s: s.flood == 0 and s.spindle[0]["direction"] == 0, "coolant and spindle off")
+    assert desk.do(desk.command.state, linuxcnc.STATE_ESTOP_RESET) == DONE
+    assert desk.do(desk.command.state, linuxcnc.STATE_ON) == DONE
+
+
+def test_ten_clients_at_once_are_all_served(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    clients = [linuxcnc.command() for _ in range(10)]
+    for number in range(50):
+        clients[number % 10].feedrate(0.5 + number / 100)
+    assert clients[9].wait_complete() == DONE
+    assert desk.look().feedrate == 0.99
