@@ -113,7 +113,10 @@ cdef hal_pin pin_of(comp, str name, int type_, int direction, value = 0):
 
 
 def load_sampler(host, dict args):
-    """cfg=types[,types...] depth=samples[,samples...]"""
+    """Queue pins every period for `halsampler`. `cfg=ffb,s` makes a channel of two floats and a bit and one of an s32, on
+    pins `sampler.N.pin.M`; letters are f b s u l (s64) k (u64). `depth=` samples each. Function `sampler.N`; pins
+    `sampler.N.enable`, `.full`, `.curr-depth`, `.overruns` and `.sample-num`.
+    """
     comp = host.component("sampler")
     cdef Sampler* s
     cdef Stream fifo
@@ -136,7 +139,10 @@ def load_sampler(host, dict args):
 
 
 def load_streamer(host, dict args):
-    """cfg=types[,types...] depth=samples[,samples...]"""
+    """Put samples of `halstreamer` on pins `streamer.N.pin.M`, one each period or, by `streamer.N.clock-mode`, at edges of
+    `streamer.N.clock` (1 falling, 2 rising, 3 both). `cfg=` and `depth=` as for sampler. Function `streamer.N`; pins
+    `streamer.N.enable`, `.empty`, `.curr-depth` and `.underruns`.
+    """
     comp = host.component("streamer")
     cdef Streamer* s
     cdef Stream fifo
@@ -174,7 +180,9 @@ cdef void look(Scope* s, long period) noexcept nogil:
 
 
 def load_scope(host, dict args):
-    """pins=name,... depth=samples: queue pins and parameters of others as they are, by ``scope.capture``"""
+    """Queue pins and parameters of other components as they are, for `halscope`: `pins=name,...` and `depth=`. Function
+    `scope.capture`.
+    """
     comp = host.component("scope")
     items = [host.hal.item(name)[1] for name in args.get("pins", "").split(",") if name]
     if not 1 <= len(items) <= MAX_COLUMNS:
