@@ -6,13 +6,14 @@ have finished everything that was queued before, so that an answer can never be 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from emctask.config import MachineConfig
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from nml.emc.emcmot import MAX_SPINDLES, Enables
-from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPED, Tool
+from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPED, CANON_UNITS_INCHES, Tool
 from rs274ngc.moves import MoveCanon
 
 
@@ -32,6 +33,8 @@ class WorldModel(MoveCanon):
 
     def __init__(self, config: MachineConfig, motion: MotionClient, io: IoClient) -> None:
         super().__init__(config.length_units, config.angle_units)
+        if math.isclose(config.length_units * 25.4, 1.0, rel_tol=1e-3):
+            MoveCanon.use_length_units(self, CANON_UNITS_INCHES)  # a machine in inches starts in G20
         self.config = config
         self.motion = motion
         self.io = io
