@@ -2,8 +2,8 @@
 
     python -m benchmarks.servo_bench [--periods 200000]
 
-Only motion itself is timed (command handler and controller in the stepped simulator); `servo_time` in EMCMOT_STATUS tells what
-a period takes in the realtime host, with pins and buffers.
+Only motion itself is timed (command handler and controller in the stepped simulator); `servo_time` in EMCMOT_STATUS
+tells what a period takes in the realtime host, with pins and buffers.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ def feed(m: Motion, axes: int, first: int) -> int:
     for _ in range(max(0, m.status.queueFree - 1000)):
         first += 1
         pos = [0.3 * ((first * (axis + 3)) % 7) for axis in range(axes)] + [0.0] * (9 - axes)
-        m.send(C.SET_LINE, id=first, pos=pos, vel=90.0, ini_maxvel=100.0, acc=1000.0, termCond=2, tolerance=0.1, motion_type=2)
+        how = {"vel": 90.0, "ini_maxvel": 100.0, "acc": 1000.0, "termCond": 2, "tolerance": 0.1, "motion_type": 2}
+        m.send(C.SET_LINE, id=first, pos=pos, **how)
     return first
 
 
@@ -61,13 +62,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--periods", type=int, default=200_000)
     periods = parser.parse_args().periods
-    print(f"{'joints':>6} {'doing':>8} {'average':>9} {'median':>9} {'99.9 %':>9} {'worst':>9}   us a period, over {CHUNK}")
+    print(f"us a period, over {CHUNK} periods each")
+    print(f"{'joints':>6}{'doing':>9}{'average':>10}{'median':>10}{'99.9 %':>10}{'worst':>10}")
     for coordinates in ("xyz", "xyzabcuvw"):
         for cutting in (False, True):
             figures = sorted(measure(coordinates, periods, cutting))
             average = sum(figures) / len(figures)
-            marks = [figures[len(figures) // 2], figures[int(len(figures) * 0.999)], figures[-1]]
-            print(f"{len(coordinates):>6} {'cutting' if cutting else 'idle':>8}" + "".join(f"{v:10.2f}" for v in [average, *marks]))
+            marks = [average, figures[len(figures) // 2], figures[int(len(figures) * 0.999)], figures[-1]]
+            doing = "cutting" if cutting else "idle"
+            print(f"{len(coordinates):>6}{doing:>9}" + "".join(f"{value:10.2f}" for value in marks))
 
 
 if __name__ == "__main__":

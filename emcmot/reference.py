@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from emcmot.commands import COMMANDS
 from emcmot.core import LIMITS, Core
 from emcmot.kins import trivkins
@@ -16,9 +18,9 @@ Made by `python -m emcmot.reference`; the words are in [motion.md](motion.md).
 """
 
 
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Iterable[Sequence[str]]) -> str:
     lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
-    return "\n".join(lines + [f"| {' | '.join(row)} |" for row in rows])
+    return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
 
 
 def commands() -> str:
@@ -59,7 +61,8 @@ def pins() -> str:
     for pin in core.pins:
         if pin.name.startswith("joint.0.") or (pin.name.startswith("axis.") and not pin.name.startswith("axis.x.")):
             continue
-        name = pin.name.replace("joint.1.", "joint.N.").replace("axis.x.", "axis.L.").replace("spindle.0.", "spindle.M.")
+        name = pin.name.replace("joint.1.", "joint.N.").replace("axis.x.", "axis.L.")
+        name = name.replace("spindle.0.", "spindle.M.")
         rows.append((f"`{name}`", pin.type, pin.direction))
     return _table(("pin", "type", "direction"), rows)
 

@@ -14,9 +14,18 @@ TYPES = {"traverse": 1, "feed": 2, "arc": 3, "probe": 5}
 def arc(m: Motion, x: float, y: float, cx: float, cy: float, turn: int = 0, id: int = 1, vel: float = 30.0) -> int:
     return int(
         m.send(
-            C.SET_CIRCLE, id=id, pos=(x, y, 0, 0, 0, 0, 0, 0, 0), center=(cx, cy, 0), normal=(0, 0, 1), turn=turn,
-            vel=vel, ini_maxvel=100.0, acc=1000.0, termCond=2, motion_type=3,
-        )  # fmt: skip
+            C.SET_CIRCLE,
+            id=id,
+            pos=(x, y, 0, 0, 0, 0, 0, 0, 0),
+            center=(cx, cy, 0),
+            normal=(0, 0, 1),
+            turn=turn,
+            vel=vel,
+            ini_maxvel=100.0,
+            acc=1000.0,
+            termCond=2,
+            motion_type=3,
+        )
     )
 
 
@@ -299,7 +308,8 @@ def test_an_abort_ends_the_wait_for_a_spindle() -> None:
 
 
 @pytest.mark.parametrize(
-    ("speed", "scale", "out", "forward"), [(600.0, 1.0, 600.0, True), (-600.0, 0.5, -300.0, False), (90.0, 1, 100.0, True)]
+    ("speed", "scale", "out", "forward"),
+    [(600.0, 1.0, 600.0, True), (-600.0, 0.5, -300.0, False), (90.0, 1.0, 100.0, True)],
 )
 def test_spindle_pins_tell_speed_and_direction(speed: float, scale: float, out: float, forward: bool) -> None:
     m = mill("coord")

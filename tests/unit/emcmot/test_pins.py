@@ -12,7 +12,7 @@ from hal.realtime import Host
 from hal.values import PARAM_DIR_NAMES, PIN_DIR_NAMES, TYPE_NAMES
 from nml.errors import HalError
 
-# kind, type, direction and name of what LinuxCNC 2.9's motmod makes with these arguments (`halcmd show pin`, `show param`)
+# kind, type, direction and name of what LinuxCNC 2.9's motmod makes with these arguments (`halcmd show`)
 LINUXCNC = Path(__file__).parent / "pins_linuxcnc_2_9.txt"
 ARGUMENTS = ["num_joints=3", "num_dio=4", "num_aio=4", "num_spindles=1", "num_misc_error=2", "unlock_joints_mask=4"]
 PLANNER_DEBUG = ("tc.", "traj.")  # parameters of LinuxCNC's own planner's insides
@@ -62,4 +62,5 @@ def test_a_bad_argument_is_named_and_leaves_nothing(host: Host, arguments: list[
 
 def test_the_periods_make_the_threads(host: Host) -> None:
     host.load("motmod", ["base_period_nsec=100000", "servo_period_nsec=1000000", "traj_period_nsec=10000000"])
-    assert {t.name: t.period_ns for t in host.hal.segment.threads()} == {"base-thread": 100_000, "servo-thread": 1_000_000}
+    threads = {t.name: t.period_ns for t in host.hal.segment.threads()}
+    assert threads == {"base-thread": 100_000, "servo-thread": 1_000_000}

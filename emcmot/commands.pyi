@@ -1,0 +1,3 @@
+"""Types of the command table; the texts are in ``commands.pyx``."""
+
+COMMANDS: list[tuple[str, int, list[str], str]]

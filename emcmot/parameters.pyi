@@ -1,0 +1,3 @@
+"""Types of the parameter table; the texts are in ``parameters.pyx``."""
+
+PARAMETERS: list[tuple[str, str, str, str]]
