@@ -1,5 +1,7 @@
 """The status as clients see it: attributes, their types and where they come from."""
 
+from pathlib import Path
+
 import pytest
 
 import linuxcnc
@@ -90,3 +92,25 @@ def test_an_operator_message_reaches_every_client(task):
     assert first.poll() == (linuxcnc.OPERATOR_ERROR, "joint 1 following error")
     assert second.poll() == (linuxcnc.OPERATOR_ERROR, "joint 1 following error")
     assert first.poll() is None
+
+
+def test_every_attribute_has_linuxcncs_type_and_length(task):
+    """The list was printed by Debian's module on a running machine; ``-`` stands for a length that varies."""
+    status = linuxcnc.stat()
+    for line in Path(__file__).with_name("stat_types.txt").read_text().splitlines():
+        name, kind, *length = line.split()
+        value = getattr(status, name)
+        assert type(value).__name__ == kind, name
+        if length and length != ["-"]:
+            assert len(value) == int(length[0]), name
+
+
+def test_the_dictionaries_have_linuxcncs_keys(task):
+    status = linuxcnc.stat()
+    joint = "jointType units backlash min_position_limit max_position_limit max_ferror min_ferror ferror_current "
+    joint += "ferror_highmark output input velocity inpos homing homed fault enabled min_soft_limit max_soft_limit "
+    joint += "min_hard_limit max_hard_limit override_limits"
+    assert set(status.joint[0]) == set(joint.split())
+    assert set(status.axis[0]) == {"velocity", "min_position_limit", "max_position_limit"}
+    spindle = "brake direction enabled override_enabled speed override homed orient_state orient_fault"
+    assert set(status.spindle[0]) == {*spindle.split(), "increasing"}
