@@ -63,21 +63,20 @@ cdef class Pending:
         self.held.held.append(("move", (self, move)))
         return 0
 
-    cdef int settle(self, State s, double u, double v, bint moved) except -1:
-        """The open corner is at (u, v): make everything that was held."""
+    cdef int settle(self, State s, double u, double v) except -1:
+        """The open corner is at (u, v): make everything that was held, if the moves still go forward."""
         cdef Move move
         cdef double before, after
-        if moved:
-            for move in self.moves:
-                if move.kind == ARC:
-                    before = sweep(move.su - move.cu, move.sv - move.cv, move.end[self.u] - move.cu, move.end[self.v] - move.cv, move.turns)
-                    after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
-                    if after > before + TINY:
-                        return fail(s, "Arc move in concave corner cannot be reached by the tool without gouging")
-                elif (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
-                    return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
-                                   "cannot be reached by the tool without gouging")
-                move.end[self.u], move.end[self.v] = u, v
+        for move in self.moves:
+            if move.kind == ARC:
+                before = sweep(move.su - move.cu, move.sv - move.cv, move.end[self.u] - move.cu, move.end[self.v] - move.cv, move.turns)
+                after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
+                if after > before + TINY:
+                    return fail(s, "Arc move in concave corner cannot be reached by the tool without gouging")
+            elif (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
+                return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
+                               "cannot be reached by the tool without gouging")
+            move.end[self.u], move.end[self.v] = u, v
         self.release()
         return 0
 
@@ -162,9 +161,9 @@ cdef int flush(State s) except -1:
     """Compensation is over, or must be: make all held calls, give the real canon back."""
     cdef Pending pending = s.comp_queue
     if pending is not None:
+        pending.settle(s, s.pos[pending.u], s.pos[pending.v])
         s.comp_queue = None
         s.canon = pending.held.canon
-        pending.release()
     return 0
 
 
@@ -304,7 +303,7 @@ cdef int meet_line(State s, Pending p, Corner c, double du, double dv) except -1
             return fail(s, "Zero degree inside corner is invalid for cutter compensation")
         t = ((c.ou + c.nu - u) * dv - (c.ov + c.nv - v) * du) / cross
         u, v = u + t * last.du, v + t * last.dv
-    p.settle(s, u, v, True)
+    p.settle(s, u, v)
     s.pos[p.u], s.pos[p.v] = u, v
     return 0
 
@@ -321,7 +320,7 @@ cdef int meet_arc(State s, Pending p, Corner c, double cu, double cv, double rad
     elif last is not None:
         if not line_and_circle(u, v, last.du, last.dv, cu, cv, radius, c, &u, &v):
             return fail(s, "Straight to arc motion makes a corner the compensated tool can't fit in without gouging")
-    p.settle(s, u, v, True)
+    p.settle(s, u, v)
     s.pos[p.u], s.pos[p.v] = u, v
     return 0
 
@@ -364,7 +363,7 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
         if inside(c):
             meet_line(s, p, c, du, dv)
         else:
-            p.settle(s, 0.0, 0.0, False)
+            p.settle(s, s.pos[p.u], s.pos[p.v])
     if code == 10 and s.feed_mode == 930:
         inverse_rate(s, b, straight_length(start, end))
     if length == 0.0:
@@ -417,7 +416,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         if inside(c):
             meet_arc(s, p, c, a.centre[0], a.centre[1], length - toward * r)
         else:
-            p.settle(s, 0.0, 0.0, False)
+            p.settle(s, s.pos[p.u], s.pos[p.v])
     if s.feed_mode == 930:
         inverse_rate(s, b, arc_length(start, &a))
     if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE:

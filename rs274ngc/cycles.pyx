@@ -8,14 +8,14 @@ from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import (
-    CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_EXACT_PATH, CANON_PLANE_XZ, CANON_PLANE_YZ, CANON_SIDE_OFF, CANON_STOPPED,
-    CANON_UNITS_INCHES,
+    CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_EXACT_PATH, CANON_PLANE_XZ, CANON_PLANE_YZ,
+    CANON_SIDE_OFF, CANON_STOPPED, CANON_UNITS_INCHES,
 )
 from rs274ngc.modes cimport read_spindle, send_control
 from rs274ngc.path cimport axis_words, feed, plane_axes, polar_to_xy, traverse
 from rs274ngc.state cimport State, fail, fail_word
 
-cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES, EXACT_PATH = CANON_EXACT_PATH
+cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES, EXACT_PATH = CANON_EXACT_PATH, CONTINUOUS = CANON_CONTINUOUS
 cdef int STOPPED = CANON_STOPPED, CLOCKWISE = CANON_CLOCKWISE, COUNTERCLOCKWISE = CANON_COUNTERCLOCKWISE
 cdef double PECK_CLEARANCE_INCH = 0.010     # how far above the last depth a peck begins, and a chip break retracts
 cdef int XZ = CANON_PLANE_XZ, YZ = CANON_PLANE_YZ
@@ -127,11 +127,13 @@ cdef int tap(State s, Block* b, Hole* h) except -1:
 
 
 cdef int bore(State s, Block* b, Hole* h) except -1:
-    """G85: feed out; G89 with a dwell before"""
+    """G85: feed out to R, then rapid; G89: dwell, feed out all the way"""
     at_height(s, h.bottom, h.third, False)
     if h.code == 890:
         s.canon.dwell(s.cycle_p)
-    return at_height(s, h.clear, h.third, False)
+        return at_height(s, h.clear, h.third, False)
+    at_height(s, h.r, h.third, False)
+    return at_height(s, h.clear, h.third, True)
 
 
 cdef int bore_stopped(State s, Block* b, Hole* h) except -1:
@@ -253,10 +255,10 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
     check_words(s, b, &h)
     low = AXES[h.third] if s.plane > 3 else AXES[h.third].lower()
     plane = PLANE_NAMES[s.plane] if s.plane > 3 else PLANE_NAMES[s.plane].lower()
-    if not has(b, axis_words[h.third]) and not again:
-        return fail(s, f"{AXES[h.third]} value unspecified in {plane} plane canned cycle", b.g_at[1])
     if not has(b, W_R) and not again:
         return fail(s, "R clearance plane unspecified in cycle", b.g_at[1])
+    if not has(b, axis_words[h.third]) and not again:
+        return fail(s, f"{AXES[h.third]} value unspecified in {plane} plane canned cycle", b.g_at[1])
     if repeats == 0:
         return fail_word(s, "Cannot do zero repeats of cycle", W_L)
     if repeats > REPEATS_MAX:
@@ -303,6 +305,8 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
     s.motion = code
     if control != EXACT_PATH:
         send_control(s)
+        if control != CONTINUOUS:
+            s.canon.set_naivecam_tolerance(s.naivecam_tolerance)
     return 0
 
 

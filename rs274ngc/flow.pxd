@@ -19,5 +19,5 @@ cdef class Flow:
     cdef int o_word_at(self, int size) noexcept
     cdef int o_line(self, int at) except -1
     cdef int bare(self, str label, int at) except -1
-    cdef double value(self, int* at) except? -1.0e300
+    cdef double value(self, int* at, str keyword) except? -1.0e300
     cdef int end_of_line(self, int at) except -1

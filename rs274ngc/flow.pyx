@@ -19,6 +19,7 @@ KEYWORDS = (
     "sub", "endsub", "call", "return", "do", "while", "endwhile", "if", "elseif", "else", "endif", "break", "continue",
     "repeat", "endrepeat",
 )
+WITHOUT_VALUE = frozenset(("sub", "do", "endwhile", "else", "endif", "break", "continue", "endrepeat"))
 BY_LENGTH = sorted(KEYWORDS, key=len, reverse=True)
 FILE_SUFFIX = ".ngc"
 
@@ -31,9 +32,10 @@ cdef class Label:
     cdef int line
     cdef long count         # repeat: turns left, this one included
     cdef bint taken         # if: a branch was run
+    cdef int defined        # line of its first line
 
-    def __cinit__(self, str kind, long position=0, int line=0, long count=0, bint taken=False):
-        self.kind, self.position, self.line, self.count, self.taken = kind, position, line, count, taken
+    def __cinit__(self, str kind, int defined, long position=0, int line=0, long count=0, bint taken=False):
+        self.kind, self.defined, self.position, self.line, self.count, self.taken = kind, defined, position, line, count, taken
 
 
 cdef class Flow:
@@ -145,6 +147,8 @@ cdef class Flow:
             return self.bare(label, at)
         if self.source is None and keyword != "call":
             return fail(self.s, f"'{keyword}' needs a program", at)
+        if keyword in WITHOUT_VALUE:
+            self.end_of_line(at)
         ACTIONS[keyword](self, label, at)
         return 0
 
@@ -154,11 +158,11 @@ cdef class Flow:
             return fail(self.s, "DISABLE_FANUC_STYLE_SUB disabled in INI file, but found bare O-word", at)
         return 0
 
-    cdef double value(self, int* at) except? -1.0e300:
+    cdef double value(self, int* at, str keyword) except? -1.0e300:
         """The expression after a keyword."""
         cdef double result
         if self.s.text[at[0]] != c'[':
-            fail(self.s, "Left bracket missing after O-word command", at[0])
+            fail(self.s, f"Left bracket missing after '{keyword}'", at[0])
         read_value(self.s, at, &result)
         return result
 
@@ -201,39 +205,39 @@ cdef class Flow:
         cdef int i = at
         cdef double condition
         if known is not None and known.kind == "do":
-            condition = self.value(&i)
+            condition = self.value(&i, "while")
             if condition != 0.0:
                 self.jump(known.position, known.line)
             else:
                 del self.s.frame.labels[label]
             return
         start = self.line_start
-        condition = self.value(&i)
+        condition = self.value(&i, "while")
         if condition != 0.0:
-            self.s.frame.labels[label] = Label("while", start, source.line - 1)
+            self.s.frame.labels[label] = Label("while", self.s.line, start, source.line - 1)
         else:
             self.s.frame.labels.pop(label, None)
             self.must_skip_to(label, ("endwhile",))
 
     def do_endwhile(self, str label, int at):
-        cdef Label known = self.known(label, ("while",), "while/do", at)
+        cdef Label known = self.known(label, ("while",), "", at)
         self.jump(known.position, known.line)
 
     def do_do(self, str label, int at):
-        self.s.frame.labels[label] = Label("do", self.source.position, self.source.line)
+        self.s.frame.labels[label] = Label("do", self.s.line, self.source.position, self.source.line)
 
     def do_repeat(self, str label, int at):
         cdef int i = at
-        cdef double times = self.value(&i)
+        cdef double times = self.value(&i, "repeat")
         if times > 2.0e9:
             fail(self.s, "Too many repetitions", at)
         if times < 1.0:
             self.must_skip_to(label, ("endrepeat",))
         else:
-            self.s.frame.labels[label] = Label("repeat", self.source.position, self.source.line, <long>floor(times))
+            self.s.frame.labels[label] = Label("repeat", self.s.line, self.source.position, self.source.line, <long>floor(times))
 
     def do_endrepeat(self, str label, int at):
-        cdef Label known = self.known(label, ("repeat",), "repeat", at)
+        cdef Label known = self.known(label, ("repeat",), "", at)
         known.count -= 1
         if known.count > 0:
             self.jump(known.position, known.line)
@@ -241,12 +245,12 @@ cdef class Flow:
             del self.s.frame.labels[label]
 
     def do_break(self, str label, int at):
-        cdef Label known = self.known(label, ("while", "do", "repeat"), "while/do", at)
+        cdef Label known = self.known(label, ("while", "do"), "while/do ", at)
         self.must_skip_to(label, LOOP_END[known.kind])
         del self.s.frame.labels[label]
 
     def do_continue(self, str label, int at):
-        cdef Label known = self.known(label, ("while", "do", "repeat"), "while/do", at)
+        cdef Label known = self.known(label, ("while", "do"), "while/do ", at)
         if known.kind == "while":
             self.jump(known.position, known.line)
         else:
@@ -255,8 +259,8 @@ cdef class Flow:
 
     def do_if(self, str label, int at):
         cdef int i = at
-        cdef bint taken = self.value(&i) != 0.0
-        self.s.frame.labels[label] = Label("if", taken=taken)
+        cdef bint taken = self.value(&i, "if") != 0.0
+        self.s.frame.labels[label] = Label("if", self.s.line, taken=taken)
         if not taken:
             self.next_branch(label)
 
@@ -266,13 +270,13 @@ cdef class Flow:
         self.branch(label, at, keyword)
 
     def branch(self, str label, int at, str keyword):
-        cdef Label known = self.known(label, ("if",), "'if'", at)
+        cdef Label known = self.known(label, ("if",), "'if' ", at)
         cdef int i = at
         while True:
             if keyword == "endif":
                 del self.s.frame.labels[label]
                 return
-            if not known.taken and (keyword == "else" or self.value(&i) != 0.0):
+            if not known.taken and (keyword == "else" or self.value(&i, "elseif") != 0.0):
                 known.taken = True
                 return
             at, keyword = self.must_skip_to(label, ("elseif", "else", "endif"))
@@ -289,10 +293,11 @@ cdef class Flow:
 
     def known(self, str label, tuple kinds, str name, int at):
         cdef Label found = self.s.frame.labels.get(label)
+        line, block = self.s.line, self.s.interp.block_text
         if found is None:
-            fail(self.s, f"{self.s.line}: undefined O-word label: '{label}'", at)
+            fail(self.s, f"{line}: undefined O-word label: '{block}'", at)
         if found.kind not in kinds:
-            fail(self.s, f"{self.s.line}: no matching {name} label: '{label}' (found '{found.kind}')", at)
+            fail(self.s, f"{line}: no matching {name}label: '{block}' (found '{found.kind}' in line {found.defined})", at)
         return found
 
     # --- Calls
@@ -381,7 +386,7 @@ cdef class Flow:
         if s.frame.fanuc:
             fail(s, "Fanuc 'O....' subroutine definition must end with 'M99'", at)
         if not s.frame.sub:
-            fail(s, f"{s.line}: not in a subroutine definition: '{label}'", at)
+            fail(s, f"{s.line}: not in a subroutine definition: '{s.interp.block_text}'", at)
         if s.frame.sub != label and keyword == "endsub":
             fail(s, f"{s.line}: no matching label: '{label}' (found '{s.frame.sub}' in line {s.frame.body_line})", at)
         returned = False
@@ -434,7 +439,7 @@ cdef class Flow:
             self.pop()
 
 
-LOOP_END = {"while": ("endwhile",), "do": ("while",), "repeat": ("endrepeat",)}
+LOOP_END = {"while": ("endwhile",), "do": ("while",)}
 ACTIONS = {word: getattr(Flow, "do_" + word) for word in KEYWORDS}
 """What each O-word does: called with the Flow, the label and the place after the keyword."""
 
