@@ -75,9 +75,10 @@ class command:
         """Write a message and wait until task has taken it."""
         try:
             self.serial = self._commands.write(message(**fields))
+            received = self._wait_for(received=True, timeout=RECEIVE_TIMEOUT)
         except NmlError as reason:
             raise error(f"{message.__name__}: {reason}") from reason
-        if not self._wait_for(received=True, timeout=RECEIVE_TIMEOUT):
+        if not received:
             raise error(f"{message.__name__}: task did not take it within {RECEIVE_TIMEOUT:g} s")
 
     def _wait_for(self, *, received: bool, timeout: float) -> bool:
@@ -100,7 +101,11 @@ class command:
 
     def wait_complete(self, timeout: float = 5.0) -> int:
         """Wait for the end of the last command: RCS_DONE, RCS_ERROR, or -1 after ``timeout`` s."""
-        if not self._wait_for(received=False, timeout=timeout):
+        try:
+            over = self._wait_for(received=False, timeout=timeout)
+        except NmlError as reason:
+            raise error(f"wait_complete: {reason}") from reason
+        if not over:
             return -1
         return self._result if self._echo == self.serial else const.RCS_DONE
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linuxcnc._connection import error, open_channel
+from nml.errors import NmlError
 from nml.message import Message
 
 __all__ = ["error", "error_channel"]
@@ -12,14 +13,17 @@ TEXT_FIELDS = ("error", "text", "display")
 
 
 class error_channel:
-    """Connection to the queue of operator messages; who reads a message first takes it away from all others."""
+    """Connection to the queue of operator messages."""
 
     def __init__(self) -> None:
         self._channel = open_channel("emcError")
 
     def poll(self) -> tuple[int, str] | None:
         """The next message as (kind, text), kind being NML_* or OPERATOR_*; None if there is none."""
-        message = self._channel.read()
+        try:
+            message = self._channel.read()
+        except NmlError as reason:
+            raise error(str(reason)) from reason
         return None if message is None else (message.TYPE_ID, text_of(message))
 
     def wait(self, timeout: float) -> bool:

@@ -12,9 +12,10 @@ from itertools import islice
 from operator import attrgetter
 from typing import Any, Generic, NamedTuple, TypeVar, cast, overload
 
-from linuxcnc._connection import open_channel, pose_tuple
+from linuxcnc._connection import error, open_channel, pose_tuple
 from nml.channel import Channel
 from nml.emc import EMC_STAT, EMC_TOOL_TABLE
+from nml.errors import NmlError
 
 T = TypeVar("T")
 
@@ -255,8 +256,11 @@ class stat:
         self.poll()
 
     def poll(self) -> None:
-        """Fetch the newest status; without a new one the old values stay."""
-        self._poll_into(self._data)
+        """Fetch the newest status; without a new one the old values stay. ``error``: the machine is out of reach."""
+        try:
+            self._poll_into(self._data)
+        except NmlError as reason:
+            raise error(str(reason)) from reason
 
     def wait(self, timeout: float) -> bool:
         """Wait up to ``timeout`` s for a status that ``poll`` has not fetched; at once true when there is one."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+import linuxcnc
 from nml.channel import Channel
 from nml.codecs import xdr
 from nml.emc import EMC_OPERATOR_ERROR, EMC_SPINDLE_ON, EMC_STAT, EMC_TASK_PLAN_EXECUTE, EMC_TOOL_TABLE
@@ -357,3 +358,26 @@ def test_a_stock_program_gets_exactly_the_bytes_of_the_stock_status(tcp: Ends) -
         assert wire.READ_REPLY.unpack_from(reply) == (1, 2, 3876, 1, 0)
         assert reply[20:] == xdr.encode(EMC_STAT(line=11))
         assert reply[20:28] == bytes.fromhex("000007cf 00002a20")
+
+
+def test_the_client_module_says_when_the_machine_is_out_of_reach(
+    tcp: Ends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tcp.server.remote()
+    monkeypatch.setattr(linuxcnc, "nmlfile", str(tcp.server.folder / "client.nml"))
+    tcp.machine["emcStatus"].write(EMC_STAT(line=1))
+    status, command, errors = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
+    tcp.server.stop()
+    for call in (status.poll, command.abort, errors.poll, linuxcnc.stat):
+        with pytest.raises(linuxcnc.error, match=r"emc\w+ at localhost:\d+: "):
+            call()
+    tcp.server.start()
+
+    def again() -> bool:
+        try:
+            status.poll()
+        except linuxcnc.error:
+            return False
+        return True
+
+    wait_until(again)
