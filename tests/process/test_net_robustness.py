@@ -235,6 +235,19 @@ def test_clients_that_are_not_worth_it_are_dismissed(tmp_path: Path, limits: Lim
         client.close()
 
 
+def test_a_client_that_takes_no_replies_is_dismissed_in_the_end(tmp_path: Path) -> None:
+    with stepping(tmp_path, Limits(stalled=0.1)) as (server, port):
+        client = socket.create_connection(("127.0.0.1", port), WAIT)
+        client.setblocking(False)
+        until = time.monotonic() + WAIT
+        while server.connection_count != 0 or time.monotonic() < until - WAIT + 0.05:
+            with contextlib.suppress(OSError):
+                client.send(request(12) * 1000)
+            server.step(0.001)
+            assert time.monotonic() < until, "it is still there"
+        client.close()
+
+
 def test_a_client_that_asks_rarely_is_kept(tmp_path: Path) -> None:
     with stepping(tmp_path, Limits(silent=0.1, unfinished=0.1, stalled=0.1)) as (server, port):
         client = socket.create_connection(("127.0.0.1", port), WAIT)
