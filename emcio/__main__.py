@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import signal
 import sys
 from collections.abc import Sequence
 
 from emcio.controller import IoChannels, IoController
+from emcio.database import DatabaseTools
 from emcio.pins import make_component
 from emcio.sources import FileTools, NoTools, ToolSource
 from emcio.toolstore import ToolStore
@@ -66,7 +68,11 @@ def build(ini: IniFile) -> IoController:
 
 
 def tool_source(ini: IniFile) -> ToolSource:
-    """Where this machine's tools come from."""
+    """Where this machine's tools come from: a data base program goes before a table file."""
+    program = ini.find("EMCIO", "DB_PROGRAM")
+    if program:
+        command = shlex.split(program)
+        return DatabaseTools([str(ini.resolve(command[0])), *command[1:]], ini.file.parent)
     name = ini.find("EMCIO", "TOOL_TABLE")
     if not name:
         return NoTools()

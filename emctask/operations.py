@@ -38,20 +38,20 @@ def operation(before: Exec = DONE, after: Exec = DONE) -> Callable[[Run], Operat
 @operation()
 def move(machine: Sequencer, packed: bytes) -> None:
     """A straight move or an arc, packed with ``emctask.motion.MOVE``."""
-    machine.motion.send_move(packed, wait_for_spindle_at_speed=machine.take_spindle_wait())
+    machine.motion.send_move(packed, line=machine.current_line, wait_for_spindle_at_speed=machine.take_spindle_wait())
 
 
 @operation(before=MOTION_AND_IO, after=MOTION)
 def probe(machine: Sequencer, payload: tuple[bytes, int]) -> None:
     """(packed move, probe type)."""
     machine.motion.send(MotCommand.CLEAR_PROBE_FLAGS)
-    machine.motion.send_move(payload[0], probe_type=payload[1])
+    machine.motion.send_move(payload[0], line=machine.current_line, probe_type=payload[1])
 
 
 @operation(before=MOTION, after=MOTION)
 def rigid_tap(machine: Sequencer, payload: tuple[bytes, float]) -> None:
     """(packed move, scale of the way back)."""
-    machine.motion.send_move(payload[0], scale=payload[1])
+    machine.motion.send_move(payload[0], line=machine.current_line, scale=payload[1])
 
 
 @operation()

@@ -1,0 +1,129 @@
+"""[EMCIO]DB_PROGRAM: a program of the user's that keeps the tools, asked and told over its standard input and output.
+
+Protocol v2.1 of LinuxCNC's manual, chapter 9.10: the program begins with a line ``v2.1``. ``g`` asks for all tools:
+lines in the format of a tool table, then ``FINI``. ``p LINE`` tells new values, ``l Tn P0`` a loaded spindle, ``u Tn
+Pm`` an unloaded one; each is answered by a line, and one with NAK is a complaint. Telling happens in its own thread.
+"""
+
+from __future__ import annotations
+
+import queue
+import subprocess
+import threading
+from pathlib import Path
+
+from emcio.toolstore import ToolStore
+from emcio.tooltable import Tool, format_line, parse_line
+from nml.errors import ConfigError
+
+VERSION = "v2.1"
+ANSWER_S = 5.0  # host time that the program has for an answer
+
+
+class DatabaseTools:
+    """A running data base program. ConfigError when it cannot be started or speaks another version."""
+
+    def __init__(self, command: list[str], folder: Path) -> None:
+        try:
+            self._process = subprocess.Popen(
+                command, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+            )
+        except OSError as error:
+            raise ConfigError(f"[EMCIO]DB_PROGRAM = {command[0]}: {error.strerror}") from None
+        self._talk = threading.Lock()
+        self._failure: str | None = None
+        self._orders: queue.Queue[str | None] = queue.Queue()
+        self._lines: queue.Queue[str | None] = queue.Queue()
+        self._reader = threading.Thread(target=self._read, name="tool data base answers", daemon=True)
+        self._reader.start()
+        version = self._line()
+        if version != VERSION:
+            self._process.kill()
+            self._process.wait()
+            raise ConfigError(f"[EMCIO]DB_PROGRAM = {command[0]} speaks {version!r}; {VERSION!r} is needed")
+        self._thread = threading.Thread(target=self._run, name="tool data base", daemon=True)
+        self._thread.start()
+
+    def load(self, store: ToolStore, path: str = "") -> list[str]:
+        """Ask for all tools."""
+        remarks: list[str] = []
+        tools: list[Tool] = []
+        with self._talk:
+            self._say("g")
+            while (line := self._line()) != "FINI":
+                try:
+                    tool = parse_line(line)
+                except ConfigError as error:
+                    remarks.append(f"tool data base: {line!r}: {error.message}")
+                    continue
+                if tool is not None:
+                    tools.append(tool)
+        return remarks + store.load(tools)
+
+    def save(self, store: ToolStore) -> None:
+        """The program keeps what ``put`` and ``spindle`` told it."""
+
+    def put(self, tool: Tool) -> None:
+        """Tell one tool's new values."""
+        self._orders.put(f"p {format_line(tool)}")
+
+    def spindle(self, letter: str, toolno: int, pocket: int) -> None:
+        """Tell that a tool went into the spindle or left it."""
+        self._orders.put(f"{letter} T{toolno} P{pocket}")
+
+    @property
+    def busy(self) -> bool:
+        """Is there something left to tell?"""
+        return bool(self._orders.unfinished_tasks)
+
+    def failure(self) -> str | None:
+        """What the program complained of, told once."""
+        failure, self._failure = self._failure, None
+        return failure
+
+    def close(self) -> None:
+        """Tell the rest, then end the program."""
+        self._orders.put(None)
+        self._thread.join(ANSWER_S)
+        self._process.terminate()
+        self._process.wait()
+        self._reader.join(ANSWER_S)
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                stream.close()
+
+    def _run(self) -> None:
+        while (order := self._orders.get()) is not None:
+            try:
+                with self._talk:
+                    self._say(order)
+                    answer = self._line()
+                if "NAK" in answer:
+                    self._failure = f"the tool data base refused {order!r}: {answer}"
+            except ConfigError as error:
+                self._failure = error.message
+            finally:
+                self._orders.task_done()
+
+    def _say(self, text: str) -> None:
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(text + "\n")
+            self._process.stdin.flush()
+        except OSError:
+            raise ConfigError("the tool data base program has ended") from None
+
+    def _line(self) -> str:
+        try:
+            line = self._lines.get(timeout=ANSWER_S)
+        except queue.Empty:
+            raise ConfigError(f"the tool data base program does not answer within {ANSWER_S:g} s") from None
+        if line is None:
+            raise ConfigError("the tool data base program has ended")
+        return line
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self._lines.put(line.strip())
+        self._lines.put(None)
