@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of docs/planner.md with the planner itself: ``python scripts/draw_planner.py``; needs matplotlib."""
+"""Draws the pictures of docs/planner.md with the planner itself; needs matplotlib."""
 
 from __future__ import annotations
 

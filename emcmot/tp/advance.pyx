@@ -20,12 +20,13 @@ from emcmot.tp.tap cimport at_rest, tap
 from emcmot.tp.tp cimport TP_FH_ENABLED, TP_TAP
 
 cdef enum:
-    PHASES_PER_PERIOD = 20000    # bound of the work of one period
+    PHASES_PER_PERIOD = 5000    # bound of the work of one period
     SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
     REFRESH_SHARE = 16           # longer ones: when this share of the path is new
 
 cdef double NO_WAY = 1e-13       # u
 cdef double SAME_SPEED = 1e-12   # relative
+cdef double ROUNDING = 4e-16     # of u, relative to the length of its span
 cdef double HARDEST = 1.0 + 1e-8 # times the limit: braking onto a point, to within rounding
 
 ctypedef struct Phase:
@@ -247,7 +248,7 @@ cdef Phase _line_phase(TpState* tp, const Span* span) noexcept nogil:
     if tp.w > target * (1.0 + SAME_SPEED):
         phase.acceleration = -a
         phase.way = fmin(x, (tp.w - target) / (2.0 * a))
-    elif tp.w >= braking * (1.0 - SAME_SPEED):
+    elif tp.w >= braking * (1.0 - SAME_SPEED) or braking - tp.w <= 4.0 * a * (NO_WAY + ROUNDING * span.h):
         phase.acceleration = fmax(-HARDEST * a, fmin(0.0, (limit - tp.w) / (2.0 * x)))
         phase.way = x
     elif tp.w < target * (1.0 - SAME_SPEED):

@@ -25,6 +25,9 @@ cdef enum:
 
 cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
 cdef double ARC_SPAN_ANGLE = 0.04
+cdef double ARC_MISS = 1.75      # angle^2 times this: share of an acceleration that interpolation on an arc may miss
+cdef double UNLIKE = 8.0         # accelerations of axes that arcs take into account in full
+cdef double NO_TURN = 1e-6       # share of the curvature below which an axis counts as straight
 cdef double ARC_BLEND_TIGHT = 0.98  # of blends with arcs, whose derivatives are not quite linear in u
 
 
@@ -302,10 +305,11 @@ cdef void _limit_body(TpState* tp, const Segment* seg, Span* span) noexcept nogi
         _limit_speed(tp, span, dq0, dq0, seg.vel_max, seg.unit)
         return
     angle = fabs(seg.omega) * span.h
-    span.tight = 1.0 - 0.75 * angle * angle
+    span.tight = 1.0 - ARC_MISS * angle * angle
     derivatives(seg, span.u0 + span.h, dq1, ddq1)
     _limit_speed(tp, span, dq0, dq1, seg.vel_max, seg.unit)
     _keep_derivatives(span, dq0, dq1, ddq0, ddq1)
+    _bound_curve(tp, span)
 
 
 cdef void _keep_derivatives(
@@ -337,13 +341,19 @@ cdef void _limit_speed(
     span.cap = v * v
 
 
-cdef double _strongest_axis(const TpState* tp, const Span* span) noexcept nogil:
-    """Limit of d2u/dt2 in blends with arcs: where dq/du nearly vanishes its interpolation bears no more."""
-    cdef double a = 0.0
+cdef void _bound_curve(const TpState* tp, Span* span) noexcept nogil:
+    """Bounds by the weakest of the axes that turn: linear interpolation bears no more than UNLIKE times its acceleration."""
+    cdef double weakest = INFINITY, turning = 0.0, turn
     cdef int j
     for j in range(span.n):
-        a = fmax(a, tp.amax[span.axis[j]])
-    return a
+        turning = fmax(turning, fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j])))
+    for j in range(span.n):
+        turn = fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j]))
+        if turn > NO_TURN * turning:
+            weakest = fmin(weakest, tp.amax[span.axis[j]])
+    span.acc = fmin(span.acc, UNLIKE * weakest)
+    if turning > 0.0:
+        span.cap = fmin(span.cap, UNLIKE * weakest / turning)
 
 
 cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
@@ -374,5 +384,5 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
         span.cap = fmin(span.cap, (a.vel_max / span.speed_before) ** 2)
         _keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
         if span.tight < 1.0:
-            span.acc = _strongest_axis(tp, span)
+            _bound_curve(tp, span)
     span.ratio = corner.ratio

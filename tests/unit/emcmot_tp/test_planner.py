@@ -332,3 +332,14 @@ def test_moves_that_are_no_moves_are_refused(bad):
 def test_limits_hold_at_any_servo_period(dt):
     program = square(Program(dt=dt, tolerance=0.05)).arc((20, 0, 0), (10, 0, 0))
     program.check(program.run(), 0.05)
+
+
+def test_slow_moves_of_any_length_reach_their_end():
+    random = np.random.default_rng(5)
+    for _ in range(400):
+        planner = Planner(0.004, 10)
+        planner.set_limits(0, 100.0, 10 ** random.uniform(2, 4))
+        length = random.uniform(0.001, 0.5)
+        planner.add_line((length,), 10 ** random.uniform(-0.7, 1))
+        planner.run_to_end(20.0)
+        assert planner.status()["done"], length
