@@ -30,16 +30,22 @@ def _interpreter(session: Session, arguments: list[str]) -> Any:
         raise HalError("Tcl HAL files need Python's Tcl; on Debian and Ubuntu: sudo apt install python3-tk") from None
     tcl = tkinter.Tcl()
 
-    def hal_command(*words: str) -> str:
+    def call(*words: str) -> tuple[str, str]:
+        """(Tcl's return code, output or reason): a Python exception would reach Tcl without its text."""
         out = io.StringIO()
         try:
             with contextlib.redirect_stdout(out):
                 session.execute([str(word) for word in words])
         except PyemcError as error:
-            raise tkinter.TclError(str(error)) from None
-        return out.getvalue().rstrip("\n")
+            return "error", str(error)
+        return "ok", out.getvalue().rstrip("\n")
 
-    tcl.createcommand("hal", hal_command)
+    tcl.createcommand("::hal_call", call)
+    tcl.eval("proc hal args { lassign [::hal_call {*}$args] code text; return -code $code $text }")
+    tcl.createcommand("basic_sim", lambda *words: basic_sim.run(session, list(words)))
+    tcl.createcommand("::tp::passnumber", lambda: session.pass_number)
+    for package in ("Hal", "Linuxcnc"):  # what scripts require is here already
+        tcl.eval(f"package provide {package} 2.10")
     for name in commands.TABLE:
         if not tcl.splitlist(tcl.eval(f"info commands {name}")):
             tcl.eval(f"proc {name} args {{ uplevel 1 [linsert $args 0 hal {name}] }}")

@@ -12,6 +12,7 @@ from hal import commands, loadusr
 from hal.client import HostClient
 from hal.core import Hal, suggest
 from hal.halfile import logical_lines, substitute, words
+from hal.twopass import LOADS, Loads
 from nml.errors import ConfigError, HalError, Place, PyemcError
 from nml.inifile import IniFile
 
@@ -32,6 +33,9 @@ class Session:
         self.verbosity = 1  # 0 nothing, 1 errors, 2 results too
         self.echo = False
         self.errors = 0
+        self.pass_number = -1  # of TWOPASS processing: 0, 1; -1 without
+        self.gathered: Loads | None = None  # load commands of pass 0
+        self.loads_done = False  # in pass 1
         self.programs: list[int] = []  # started by loadusr and not waited for
         self.place = Place("<commandline>")
         self.comp = self.hal.add_component(f"halcmd{os.getpid()}")
@@ -117,9 +121,19 @@ class Session:
         if command is None:
             raise HalError(f"Unknown command '{name}'{suggest(name, commands.TABLE)}")
         command.check(name, args)
+        if self._left_out(given):
+            return
         command.run(self, args)
         if self.verbosity > 1:
             print(f"{name} done: {' '.join(args)}")
+
+    def _left_out(self, given: list[str]) -> bool:
+        """Whether TWOPASS keeps this command from being executed in this pass."""
+        if self.gathered is not None:
+            if given[0] in LOADS:
+                self.gathered.add(given)
+            return given[0] != "source"
+        return self.loads_done and given[0] in LOADS
 
     def source(self, path: str) -> None:
         """``source``: a file beside the current one, or in the library with ``LIB:``."""

@@ -14,7 +14,7 @@ ALLOWED = {f"{key}{n}" for key in ("name", "period", "fp") for n in (1, 2, 3)}
 
 
 def load(host: Host, args: dict[str, str]) -> None:
-    """Realtime threads: `name1=`, `period1=` (ns), `fp1=` and so on for up to three, fastest first; else one of 1 ms."""
+    """Realtime threads: `name1=`, `period1=` (ns), `fp1=`; up to three, fastest first; one of 1 ms by default."""
     unknown = sorted(set(args) - ALLOWED)
     if unknown:
         raise HalError(f"threads: unknown parameter '{unknown[0]}'; name1-3, period1-3 and fp1-3 are known")

@@ -1,0 +1,173 @@
+"""halcmd, halrun and the programs around them, as their users start them: output, messages, exit codes."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.support.halsession import environment, halcmd, run, script
+
+pytestmark = pytest.mark.process
+
+
+@pytest.fixture
+def session(own_namespace: str) -> Iterator[None]:
+    """A realtime session with a sine on a signal."""
+    loads = "loadrt threads\nloadrt siggen\nloadrt and2\n"
+    commands = loads + "net wave siggen.0.sine\naddf siggen.0.update thread1\nstart\n"
+    assert run("halcmd", "-f", given=commands).returncode == 0
+    yield
+    assert run("halrun", "-U").returncode == 0
+
+
+def test_a_failed_command_ends_with_code_1_and_its_place(own_namespace: str, tmp_path: Path) -> None:
+    assert (run("halcmd", "foo").returncode, run("halcmd", "foo").stderr) == (
+        1, "<commandline>:0: Unknown command 'foo'\n",
+    )  # fmt: skip
+    done = script(tmp_path, "newsig a bit\nnewsig b nonsense\nnewsig c bit\nshow sig\n")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith(f"{tmp_path}/test.hal:2: Unknown signal type 'nonsense'")
+
+
+def test_k_keeps_going_and_q_is_silent(own_namespace: str, tmp_path: Path) -> None:
+    done = script(tmp_path, "bogus\nnewsig a bit\ngets a\n", "-k")
+    assert (done.returncode, done.stdout) == (1, "FALSE\n")
+    assert script(tmp_path, "bogus\n", "-Q").stderr == ""
+
+
+def test_wrong_usage_is_code_255(own_namespace: str) -> None:
+    assert run("halcmd", "-z").returncode == 255
+    assert run("halcmd", "-f", "/no/such/file").returncode == 255
+    assert "cannot read the HAL file" in run("halrun", "-f", "/no/such/file").stderr
+
+
+def test_commands_come_from_standard_input_too(own_namespace: str) -> None:
+    done = run("halcmd", "-f", given="newsig x s32\nsets x -7\ngets x\n")
+    assert (done.returncode, done.stdout) == (0, "-7\n")
+
+
+def test_script_mode_prints_items_in_single_lines(session: None) -> None:
+    assert halcmd("-s", "show", "sig").split()[0::2][:2] == ["float", "wave"]
+    assert halcmd("-s", "show", "pin", "and2.0.in0") == "and2 bit   IN FALSE and2.0.in0\n\n"
+    assert halcmd("-s", "show", "thread").endswith("siggen.0.update\n\n")
+
+
+def test_what_is_saved_makes_the_same_session_again(session: None, tmp_path: Path) -> None:
+    saved = tmp_path / "saved.hal"
+    halcmd("setp", "siggen.0.frequency", "2.5")
+    halcmd("save", "allu", str(saved))
+    assert run("halrun", "-U").returncode == 0
+    assert run("halcmd", "-f", str(saved)).returncode == 0
+    assert halcmd("getp", "siggen.0.frequency") == "2.5\n"
+    again = tmp_path / "again.hal"
+    halcmd("save", "allu", str(again))
+    assert again.read_text() == saved.read_text()
+
+
+def test_waiting_for_programs(own_namespace: str, tmp_path: Path) -> None:
+    python = sys.executable
+    component = tmp_path / "comp.py"
+    component.write_text(
+        "import hal, time\nc = hal.component('comp')\nc.newpin('x', hal.HAL_S32, hal.HAL_OUT)\nc['x'] = 3\n"
+        "time.sleep(0.1)\nc.ready()\ntime.sleep(0.2)\nc.exit()\n"
+    )
+    done = script(tmp_path, f"loadusr -Wn comp {python} {component}\ngetp comp.x\nwaitusr comp\nshow pin comp\n")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("3\n")
+    assert "comp.x" not in done.stdout
+    assert "failed, returned 3" in script(tmp_path, f"loadusr -w {python} -c exit(3)\n").stderr
+    assert script(tmp_path, f"loadusr -w -i {python} -c exit(3)\n").returncode == 0
+    assert "exited without becoming ready" in script(tmp_path, f"loadusr -W {python} -c pass\n").stderr
+    assert "program 'no-such-program' not found" in script(tmp_path, "loadusr no-such-program\n").stderr
+
+
+def test_a_second_halrun_in_a_namespace_is_refused(session: None, tmp_path: Path) -> None:
+    done = script(tmp_path, "newsig a bit\n")
+    assert done.returncode == 1
+    assert "Realtime already running" in done.stderr
+    assert halcmd("gets", "wave")  # and the first is unharmed
+
+
+def test_two_namespaces_do_not_see_each_other(
+    session: None, monkeypatch: pytest.MonkeyPatch, own_namespace: str
+) -> None:
+    monkeypatch.setenv("PYEMC_NAMESPACE", own_namespace + "-b")
+    assert "not found" in run("halcmd", "gets", "wave").stderr
+    monkeypatch.setenv("PYEMC_NAMESPACE", own_namespace)
+
+
+def test_halsampler_and_halstreamer_are_each_others_inverse(own_namespace: str, tmp_path: Path) -> None:
+    lines = [f"{n * 0.5:f} {n % 2} {-n} " for n in range(50)]
+    (tmp_path / "data").write_text("# a remark\n" + "\n".join(lines) + "\nnonsense\n")
+    done = script(
+        tmp_path,
+        "loadrt threads\nloadrt streamer cfg=fbs depth=100\nloadrt sampler cfg=fbs depth=200\n"
+        + "".join(f"net s{n} streamer.0.pin.{n} sampler.0.pin.{n}\n" for n in range(3))
+        + "net e streamer.0.empty\naddf streamer.0 thread1\naddf sampler.0 thread1\n"
+        + "loadusr -w halstreamer data\nstart\nloadusr -w halsampler -n 50\n",
+    )
+    assert done.stdout == "\n".join(lines) + "\n"
+    assert "data:52: 1 columns; 3 would be right; line skipped" in done.stderr
+
+
+def test_the_scope_records_around_its_trigger(session: None, tmp_path: Path) -> None:
+    path = tmp_path / "out.csv"
+    done = run(
+        "scope", "--capture", "siggen.0.sawtooth", "--thread", "thread1", "--samples", "50", "--before", "10",
+        "--trigger", "siggen.0.sawtooth>0.2491", "--csv", str(path),
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    rows = [[float(word) for word in line.split(",")] for line in path.read_text().splitlines()[1:]]
+    assert [round(row[0] * 1000) for row in rows] == list(range(-10, 40))
+    assert rows[9][1] <= 0.2491 < rows[10][1]
+    assert all(b[1] - a[1] == pytest.approx(0.002) for a, b in pairwise(rows))
+    assert "scope" not in halcmd("list", "comp")
+
+
+def test_meter_and_report_show_the_session(session: None) -> None:
+    assert len(run("meter", "-n", "2", "sig", "wave").stdout.splitlines()) == 2
+    text = run("report").stdout
+    assert "wave (float)" in text
+    assert "from siggen.0.sine" in text
+    halcmd("net", "bit", "siggen.0.clock", "and2.0.in0")
+    assert '"siggen.0" -> "and2.0" [label="bit"];' in run("report", "--dot").stdout
+
+
+def test_latency_test_measures_in_a_session_of_its_own(own_namespace: str, tmp_path: Path) -> None:
+    lines = run("latency", "-", "1ms", "--seconds", "0.3").stdout.splitlines()
+    assert lines[-1].split()[:2] == ["servo", "1000000"]
+
+
+def test_the_shell_completes_commands_and_names(session: None) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "from hal.session import Session\nfrom hal.interactive import Completer\n"
+         "with Session() as s:\n    c = Completer(s)\n    print(c.candidates([], 'unl'))\n"
+         "    print(c.candidates(['setp'], 'and2.0.in'))\n    print(c.candidates(['addf', 'x'], ''))\n"
+         "    print(c.candidates(['net', 'wave', 'a'], 'siggen.0.si'))"],
+        env=environment(), capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    assert done.stdout.splitlines() == [
+        "['unlinkp', 'unload', 'unloadrt', 'unloadusr', 'unlock']", "['and2.0.in0', 'and2.0.in1']", "['thread1']",
+        "['siggen.0.sine']",
+    ]  # fmt: skip
+
+
+def test_a_tcl_file_speaks_hal(own_namespace: str, tmp_path: Path) -> None:
+    pytest.importorskip("tkinter")
+    path = tmp_path / "f.tcl"
+    path.write_text(
+        "loadrt and2 names=a,b\nforeach n {a b} { setp $n.in0 1 }\nputs [getp b.in0]\nputs $::KINS(JOINTS)\n"
+        "puts [hal list comp]\nsetp nothing 1\n"
+    )
+    ini = tmp_path / "m.ini"
+    ini.write_text("[KINS]\nJOINTS = 3\n")
+    done = run("halrun", "-i", str(ini), str(path), cwd=tmp_path)
+    assert done.stdout.splitlines()[:2] == ["TRUE", "3"]
+    assert "and2" in done.stdout
+    assert done.returncode == 1
+    assert "parameter or pin 'nothing' not found" in done.stderr
