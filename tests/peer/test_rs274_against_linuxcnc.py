@@ -25,7 +25,10 @@ pytestmark = [
     pytest.mark.skipif(not PEER.exists(), reason="Debian's linuxcnc-uspace is not installed"),
 ]
 
-CORPUS = ("3D_Chips", "spiral", "flowsnake", "cds", "arcspiral", "daisy", "comp", "polar", "m73-demo", "lathecomp", "retval")
+CORPUS = (
+    "3D_Chips", "spiral", "flowsnake", "cds", "arcspiral", "daisy", "comp", "polar", "m73-demo", "lathecomp",
+    "retval",
+)  # fmt: skip
 
 
 def calls(output: str) -> list[str]:

@@ -11,12 +11,27 @@ from collections.abc import Callable
 TOOLS = "T1 P1 Z1.5 D0.25\nT2 P2 Z2 D0.5\nT7 P5 X1 Z0.1 D0.1\n"
 
 MISTAKES = (
-    "g1 x1 g0", "g2 x1", "g99.5", "m7 m8", "x1 y2 q3", "g4", "g10 x1", "g43 h77", "t55", "g0 x[1/0]", "g0 x#<nothing>",
-    "g53 g91 g0 x1", "g0 x1 x2", "f-1", "s-1", "m66", "g81 x1", "g38.2", "g0 x1..2", "g0 x[1", "#0=1", "m200", "g33 z1",
-    "g41.1", "g92", "g2 x1 r0.001", "%%", "g0 n5", "m62", "g0 x sqrt[-1]", "g5.3", "m19 p7", "g3 x1 i1 r1", "o9 endif",
-    "g82 x1 z-1 r1", "g83 z-1 r1", "g76 z1", "m61", "g10 l2 p12 x1", "g64 r1", "g0 x1 l2", "m98",
+    "g1 x1 g0", "g2 x1", "g99.5", "m7 m8", "x1 y2 q3", "g4", "g10 x1", "g43 h77", "t55", "g0 x[1/0]",
+    "g0 x#<nothing>", "g53 g91 g0 x1", "g0 x1 x2", "f-1", "s-1", "m66", "g81 x1", "g38.2", "g0 x1..2", "g0 x[1",
+    "#0=1", "m200", "g33 z1", "g41.1", "g92", "g2 x1 r0.001", "%%", "g0 n5", "m62", "g0 x sqrt[-1]", "g5.3",
+    "m19 p7", "g3 x1 i1 r1", "o9 endif", "g82 x1 z-1 r1", "g83 z-1 r1", "g76 z1", "m61", "g10 l2 p12 x1", "g64 r1",
+    "g0 x1 l2", "m98",
 )  # fmt: skip
 """Lines that both interpreters must refuse, wherever they stand."""
+
+
+MODES = (
+    "g20", "g21", "g90", "g91", "g98", "g99", "g61", "g61.1", "g64", "g94", "g40", "g64 p0.1", "g64 p.2 q.1",
+)  # fmt: skip
+
+CYCLES = (("g81", ""), ("g82", "p.5"), ("g83", "q.7"), ("g73", "q.9"), ("g85", ""), ("g89", "p1"))
+
+MACHINE = (
+    "m3 s100", "m4 s50", "m5", "m7", "m8", "m9", "m48", "m49", "m50 p0", "m51 p1", "m52 p1", "m53 p0", "m0", "m1",
+    "m60", "t1 m6", "t2", "m6", "m62 p1", "m63 p2", "m64 p3", "m65 p4", "m67 e1 q2.5", "m68 e0 q1", "g4 p.5",
+    "m66 p1 l0", "f50", "(remark)", "(msg,hello)", "(debug,#1 #<_x> %d#2)", "s70", "g97 s10", "g96 d100 s20", "g97",
+)  # fmt: skip
+"""Lines about the machine rather than its motion."""
 
 
 class Generator:
@@ -41,11 +56,8 @@ class Generator:
         return [f"{self.random.choice(('g0', 'g1'))} {self.axes('xyzabc' if self.random.random() < 0.1 else 'xyz')}"]
 
     def modal(self) -> list[str]:
-        return [
-            self.random.choice(
-                ("g20", "g21", "g90", "g91", "g98", "g99", "g61", "g61.1", "g64", "g64 p0.1", "g64 p.2 q.1", "g94", "g40")
-            )
-        ]
+        mode = self.random.choice(MODES)
+        return ["g49", mode] if mode in ("g20", "g21") else [mode]
 
     def arc(self) -> list[str]:
         code = self.random.choice(("g2", "g3"))
@@ -80,18 +92,12 @@ class Generator:
         return ["g90", line] if line.startswith("g53") else [line]
 
     def machine(self) -> list[str]:
-        return [
-            self.random.choice(
-                ("m3 s100", "m4 s50", "m5", "m7", "m8", "m9", "m48", "m49", "m50 p0", "m51 p1", "m52 p1", "m53 p0", "m0", "m1",
-                 "m60", "t1 m6", "t2", "m6", "m62 p1", "m63 p2", "m64 p3", "m65 p4", "m67 e1 q2.5", "m68 e0 q1", "g4 p.5",
-                 "m66 p1 l0", "(remark)", "(msg,hello)", "(debug,#1 #<_x> %d#2)", "f50", "s70", "g97 s10", "g96 d100 s20", "g97")
-            )
-        ]  # fmt: skip
+        return [self.random.choice(MACHINE)]
 
     def cycle(self) -> list[str]:
         plane, axes = self.random.choice((("g17", "xyz"), ("g17", "xyz"), ("g18", "zxy"), ("g19", "yzx")))
         first, second, third = axes
-        code, extra = self.random.choice((("g81", ""), ("g82", "p.5"), ("g83", "q.7"), ("g73", "q.9"), ("g85", ""), ("g89", "p1")))
+        code, extra = self.random.choice(CYCLES)
         repeat = f" l{self.random.randint(1, 3)}" if self.random.random() < 0.3 else ""
         mode = self.random.choice(("g90", "g91"))
         r, bottom = (2.0, -2.0) if mode == "g90" else (0.5, -1.5)
@@ -119,13 +125,14 @@ class Generator:
                 [f"o{n} if [#1 gt {self.random.randint(-3, 3)}]", *body, f"o{n} else", *self.straight(), f"o{n} endif"],
                 [f"o{n} repeat [{self.random.randint(0, 3)}]", *body, f"o{n} endrepeat"],
                 ["#8=0", f"o{n} do", "#8=[#8+1]", *body, f"o{n} while [#8 lt 2]"],
-                [f"o{n} sub", f"g0 x[#1*2] y#2", f"o{n} return [#1]", f"o{n} endsub", f"o{n} call [{self.number()}] [2]"],
+                [f"o{n} sub", "g0 x[#1] y#2", f"o{n} return [#1]", f"o{n} endsub", f"o{n} call [{self.number()}] [2]"],
             )
         )
 
     def parameter(self) -> list[str]:
         target = self.random.choice(("#1", "#31", "#<a>", "#<_g>"))
-        return ["#<a>=1 #<_g>=2", f"{target}=[{self.number()} {self.random.choice(('+', '-', '*'))} #1]", "g0 x[#<a> mod 10]"]
+        operator = self.random.choice(("+", "-", "*"))
+        return ["#<a>=1 #<_g>=2", f"{target}=[{self.number()} {operator} #1]", "g0 x[#<a> mod 10]"]
 
     def compensation(self) -> list[str]:
         lines = ["g90 g17 g0 x0 y0", f"{self.random.choice(('g41.1', 'g42.1'))} d{self.number(0.1, 0.4)}", "g1 x5 y0"]
@@ -136,8 +143,8 @@ class Generator:
         return [*lines, "g40", f"g1 x{x + 9:.3f} y{y + 9:.3f}"]
 
     KINDS: tuple[tuple[Callable[[Generator], list[str]], int], ...] = (
-        (straight, 8), (modal, 4), (arc, 4), (offsets, 4), (machine, 5), (cycle, 2), (polar, 1), (inverse, 1), (flow, 2),
-        (parameter, 1), (compensation, 1),
+        (straight, 8), (modal, 4), (arc, 4), (offsets, 4), (machine, 5), (cycle, 2), (polar, 1), (inverse, 1),
+        (flow, 2), (parameter, 1), (compensation, 1),
     )  # fmt: skip
 
     def program(self, pieces: int = 25, mistake: bool = False) -> str:

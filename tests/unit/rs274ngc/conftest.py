@@ -10,9 +10,10 @@ from rs274ngc.interp import Interpreter
 from rs274ngc.offline import OfflineCanon
 
 COMMANDS = (
-    "straight_traverse straight_feed arc_feed set_feed_rate message comment dwell select_tool change_tool program_end "
-    "program_stop optional_program_stop set_g5x_offset set_g92_offset start_spindle_clockwise stop_spindle_turning"
-).split()
+    "straight_traverse", "straight_feed", "arc_feed", "set_feed_rate", "message", "comment", "dwell", "select_tool",
+    "change_tool", "program_end", "program_stop", "optional_program_stop", "set_g5x_offset", "set_g92_offset",
+    "start_spindle_clockwise", "stop_spindle_turning",
+)  # fmt: skip
 
 
 class Recorder(OfflineCanon):

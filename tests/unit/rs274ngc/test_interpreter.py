@@ -11,6 +11,7 @@ from rs274ngc.codes import TABLE
 from rs274ngc.geometry import ARC
 from rs274ngc.interp import INTERP_EXECUTE_FINISH, INTERP_EXIT, INTERP_OK, Interpreter
 from rs274ngc.offline import OfflineCanon
+from rs274ngc.reference import reference
 
 
 @pytest.fixture
@@ -133,3 +134,8 @@ def test_geometry_follows_an_arc_within_the_chord_error(tmp_path):
 def test_every_code_has_a_summary():
     assert len({row[0] for row in TABLE}) == len(TABLE) > 100
     assert all(row[3] for row in TABLE)
+
+
+def test_the_reference_of_codes_is_current():
+    page = Path(__file__).parents[3] / "docs" / "gcode.md"
+    assert page.read_text() == reference()
