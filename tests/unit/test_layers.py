@@ -11,7 +11,7 @@ PACKAGES = {"nml", "hal", "rs274ngc", "emcmot", "emctask", "emcio", "linuxcnc", 
 ALLOWED = {
     "nml": set(),
     "hal": {"nml"},
-    "rs274ngc": {"nml.errors"},
+    "rs274ngc": {"nml.errors", "nml.inifile"},
     "emcmot": {"nml", "hal", "rs274ngc"},
     "emctask": {"nml", "rs274ngc"},
     "emcio": {"nml", "hal"},
