@@ -6,6 +6,7 @@ import contextlib
 import os
 from pathlib import Path
 
+from hal import twopass
 from hal.session import Quit, Session
 from linuxcnc.configuration import HalFile
 from nml.errors import Place, PyemcError
@@ -28,10 +29,11 @@ def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -
     before = Path.cwd()
     os.chdir(folder)
     try:
-        for file in files:
-            with contextlib.suppress(Quit):
-                if not session.run_file(file.path, file.arguments):
-                    raise HalFileError(f"{file.path}: failed")
+        if ini.find("HAL", "TWOPASS"):
+            if not twopass.run(session, [(file.path, file.arguments) for file in files]):
+                raise HalFileError("[HAL]TWOPASS: a HAL file failed")
+        else:
+            _run_in_order(session, files)
         for number, line in enumerate(ini.findall("HAL", "HALCMD"), 1):
             session.place = ini.place("HAL", "HALCMD", number)
             session.run_line(line)
@@ -39,3 +41,10 @@ def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -
         session.run_line("start")
     finally:
         os.chdir(before)
+
+
+def _run_in_order(session: Session, files: list[HalFile]) -> None:
+    for file in files:
+        with contextlib.suppress(Quit):
+            if not session.run_file(file.path, file.arguments):
+                raise HalFileError(f"{file.path}: failed")

@@ -39,7 +39,16 @@ sys.exit(0 if abs(s.position[0] - 0.5) < 1e-6 else 7)
 """
 
 
-@pytest.mark.parametrize("ini", ["axis/axis_mm.ini", "axis/axis.ini", "axis/lathe.ini", "axis/gantry/gantry_mm.ini"])
+STOCK = [
+    "axis/axis_mm.ini",
+    "axis/axis.ini",
+    "axis/lathe.ini",
+    "axis/gantry/gantry_mm.ini",
+    "axis/twopass/twopass.ini",
+]
+
+
+@pytest.mark.parametrize("ini", STOCK)
 def test_a_stock_configuration_starts_homes_and_moves(tmp_path, ini):
     source = SIM / ini
     if not source.is_file():
