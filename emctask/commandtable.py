@@ -39,17 +39,27 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a command needs. ``urgent``: it overtakes everything and ends what is being waited for."""
+    """What a command needs. ``urgent(message)``: it overtakes everything and ends what is being waited for."""
 
     handler: Handler
     on: bool
     modes: frozenset[Mode]
     idle: bool
-    urgent: bool
+    urgent: Callable[[Any], bool]
 
 
 RULES: dict[int, Rule] = {}
 REFUSALS: dict[int, str] = {}
+
+
+def always(message: Message) -> bool:
+    """An urgent command."""
+    return True
+
+
+def never(message: Message) -> bool:
+    """A command that waits for its turn."""
+    return False
 
 
 def command(
@@ -57,7 +67,7 @@ def command(
     on: bool = False,
     modes: frozenset[Mode] = ANY,
     idle: bool = False,
-    urgent: bool = False,
+    urgent: Callable[[Any], bool] = never,
 ) -> Callable[[Handler], Handler]:
     """Register a handler. ``on``: only while the machine is on; ``idle``: only while no program or MDI line runs."""
 

@@ -33,7 +33,7 @@ class Span:
         self.pack = packer.pack
         self.pack_into = packer.pack_into
         self.unpack_from = packer.unpack_from
-        record: Any = namedtuple("record", [field.name for field in fields])
+        record: Any = namedtuple("record", [field.name for field in fields])  # type: ignore[misc]
         self._make = record._make
 
     def read(self, source: bytearray, start: int = 0) -> Any:

@@ -160,7 +160,7 @@ class Task:
             self._waiting.append(message)
 
     def _obey(self) -> None:
-        if any(RULES[m.TYPE_ID].urgent for m in self._waiting if m.TYPE_ID in RULES):
+        if any(RULES[m.TYPE_ID].urgent(m) for m in self._waiting if m.TYPE_ID in RULES):
             self._expected = None
         while self._waiting:
             if self._expected is not None and not self._has_arrived(self._expected):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from emctask import transitions
-from emctask.commandtable import MANUAL, command, refuse
+from emctask.commandtable import MANUAL, always, command, refuse
 from nml.emc import (
     EMC_AUX_ESTOP_OFF,
     EMC_AUX_ESTOP_ON,
@@ -68,7 +68,7 @@ def tool_data(task: Task, message: Command) -> None:
     task.expect(lambda: task.io.done, "io does not finish the change of the tool table", 5.0)
 
 
-@command(EMC_AUX_ESTOP_ON, urgent=True)
+@command(EMC_AUX_ESTOP_ON, urgent=always)
 def estop_on(task: Task, message: Message) -> None:
     """E-stop."""
     transitions.to_estop(task)

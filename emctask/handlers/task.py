@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from emctask import transitions
-from emctask.commandtable import command, refuse
+from emctask.commandtable import always, command, refuse
 from nml.emc import (
     EMC_ABORT,
     EMC_EXEC_PLUGIN_CALL,
@@ -34,20 +34,25 @@ def nothing(task: Task, message: Message) -> None:
     """Task is initialised before it takes its first command."""
 
 
-@command(EMC_HALT, EMC_TASK_HALT, urgent=True)
+@command(EMC_HALT, EMC_TASK_HALT, urgent=always)
 def halt(task: Task, message: Message) -> None:
     """Stop the machine and end task."""
     task.runner.abort(Reason.TASK_ABORT)
     task.running = False
 
 
-@command(EMC_TASK_ABORT, EMC_ABORT, urgent=True)
+@command(EMC_TASK_ABORT, EMC_ABORT, urgent=always)
 def abort(task: Task, message: Message) -> None:
     """Stop motion, program, MDI, spindle and coolant."""
     task.runner.abort(Reason.TASK_ABORT)
 
 
-@command(EMC_TASK_SET_STATE)
+def stops_the_machine(message: EMC_TASK_SET_STATE) -> bool:
+    """An order to stop the machine does not wait for anything."""
+    return message.state in (State.ESTOP, State.OFF)
+
+
+@command(EMC_TASK_SET_STATE, urgent=stops_the_machine)
 def set_state(task: Task, message: EMC_TASK_SET_STATE) -> None:
     """E-stop, E-stop reset, off, on."""
     transitions.set_state(task, message.state)
@@ -64,11 +69,6 @@ def set_debug(task: Task, message: EMC_SET_DEBUG) -> None:
     """Choose what is logged, here and in io."""
     task.debug = message.debug
     task.io.send(EMC_SET_DEBUG(debug=message.debug))
-
-
-def is_urgent_state(message: EMC_TASK_SET_STATE) -> bool:
-    """An order to stop the machine does not wait for anything."""
-    return message.state in (State.ESTOP, State.OFF)
 
 
 refuse([EMC_SYSTEM_CMD], "programs run other programs by user M-codes, M100 to M199")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import MANUAL, Refused, command, refuse
+from emctask.commandtable import MANUAL, Refused, always, command, refuse
 from nml.emc import (
     EMC_MOTION_ABORT,
     EMC_MOTION_ADAPTIVE,
@@ -161,7 +161,7 @@ def clear_probe(task: Task, message: EMC_TRAJ_CLEAR_PROBE_TRIPPED_FLAG) -> None:
     task.motion.send(MotCommand.CLEAR_PROBE_FLAGS)
 
 
-@command(EMC_TRAJ_ABORT, EMC_MOTION_ABORT, urgent=True)
+@command(EMC_TRAJ_ABORT, EMC_MOTION_ABORT, urgent=always)
 def abort(task: Task, message: Message) -> None:
     """Stop motion; the program that commands it cannot go on without it."""
     task.runner.abort(Reason.TASK_ABORT)

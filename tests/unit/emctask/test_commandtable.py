@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from emctask import handlers
-from emctask.commandtable import REFUSALS, RULES, Refused, Rule, check
+from emctask.commandtable import REFUSALS, RULES, Refused, Rule, check, never
+from nml.emc import EMC_TASK_ABORT, EMC_TASK_PLAN_EXECUTE, EMC_TASK_SET_STATE
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
@@ -19,7 +20,7 @@ assert handlers.LOADED
 
 def everywhere(**changes) -> Rule:
     values = {"handler": lambda task, message: None, "on": False, "modes": frozenset(Mode), "idle": False}
-    return Rule(**(values | {"urgent": False} | changes))
+    return Rule(**(values | {"urgent": never} | changes))
 
 
 def test_every_command_of_the_vocabulary_is_handled_or_refused_with_a_reason():
@@ -52,6 +53,13 @@ def test_no_command_is_both_handled_and_refused():
 def test_a_rule_that_is_not_met_says_why(rule, state, mode, interp, reason):
     with pytest.raises(Refused, match=reason):
         check(rule, "EMC_SOMETHING", state, mode, interp)
+
+
+def test_orders_to_stop_overtake_what_is_being_waited_for():
+    urgent = RULES[EMC_TASK_SET_STATE.TYPE_ID].urgent
+    assert [urgent(EMC_TASK_SET_STATE(state=state)) for state in State] == [True, False, True, False]
+    assert RULES[EMC_TASK_ABORT.TYPE_ID].urgent(EMC_TASK_ABORT())
+    assert not RULES[EMC_TASK_PLAN_EXECUTE.TYPE_ID].urgent(EMC_TASK_PLAN_EXECUTE())
 
 
 def test_a_rule_that_is_met_says_nothing():
