@@ -25,7 +25,15 @@ from emcmot._messages cimport (
     MotionState_FREE,
     MotionState_TELEOP,
 )
-from emcmot.homing cimport HOME_IDLE, SEQUENCE_IDLE, home_all, home_joint, rename_position, update_homed
+from emcmot.homing cimport (
+    HOME_IDLE,
+    SEQUENCE_IDLE,
+    home_all,
+    home_joint,
+    homing_is_active,
+    rename_position,
+    update_homed,
+)
 from emcmot.jog cimport (
     JOG_ABSOLUTE,
     JOG_CONTINUOUS,
@@ -33,6 +41,7 @@ from emcmot.jog cimport (
     jog_axis,
     jog_joint,
     stop_axis_jog,
+    stop_jogs,
     stop_joint_jog,
 )
 from emcmot.kins.kinematics cimport KINEMATICS_INVERSE_ONLY
@@ -196,9 +205,13 @@ cdef int jog(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if c.vel == 0.0:
         snprintf(report(m), TEXT_SIZE, b"can't jog at speed 0")
         return MotCommandStatus_INVALID_PARAMS
+    if homing_is_active(m):
+        return refuse(m, b"can't jog while a joint is homing")
     if c.mode:
         if m.mode != MotionState_FREE:
             return refuse(m, b"can't jog a joint: motion is not in joint mode")
+        if not m.joint[c.joint].active:
+            return refuse(m, b"can't jog a joint that is not active")
         result = jog_joint(m, c.joint, kind, c.vel, c.offset)
     else:
         if m.mode != MotionState_TELEOP:
@@ -239,6 +252,9 @@ cdef int home(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
         return refuse(m, b"can't home: a home sequence is running already")
     if c.joint < -1:
         return refuse(m, b"can't home: there is no such joint")
+    if c.joint >= 0 and not m.joint[c.joint].active:
+        return refuse(m, b"can't home a joint that is not active")
+    stop_jogs(m)
     if c.joint == -1:
         home_all(m)
     elif m.joint[c.joint].home.state != HOME_IDLE:
@@ -380,5 +396,5 @@ cdef int spindle_brake_release(Motion* m, const EMCMOT_COMMAND* c) noexcept nogi
 
 
 cdef int spindle_orient(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    orient_spindle(&m.spindle[c.spindle], c.orientation, c.mode, c.timeout)
+    orient_spindle(&m.spindle[c.spindle], c.orientation, c.mode)
     return MotCommandStatus_OK

@@ -55,6 +55,7 @@ cdef inline int homing_ignores_limits(const Joint* joint) noexcept nogil:
 cdef void homing_cycle(Motion* m) noexcept nogil
 cdef int home_joint(Motion* m, int number) noexcept nogil          # 0, or -1 refused with a report
 cdef void home_all(Motion* m) noexcept nogil
+cdef int homing_is_active(Motion* m) noexcept nogil
 cdef void cancel_homing(Motion* m) noexcept nogil
 cdef void update_homed(Motion* m) noexcept nogil
 cdef void rename_position(Joint* joint, double shift) noexcept nogil

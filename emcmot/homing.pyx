@@ -129,13 +129,20 @@ cdef int state_initial_search_start(Motion* m, Joint* joint, int number) noexcep
     return enter(joint, HOME_INITIAL_SEARCH_WAIT)
 
 
-cdef int state_initial_backoff_start(Motion* m, Joint* joint, int number) noexcept nogil:
+cdef int begin_search(Motion* m, Joint* joint, int number, int closed, double vel, int next_state) noexcept nogil:
+    """At rest, and where the home switch is as it should be: move until it changes."""
     if not settled(m, joint):
         return 0
-    if not joint.home_sw:
+    if closed and not joint.home_sw:
         return fail(m, joint, number, b"the home switch opened before the joint moved off it")
-    search(m, joint, -joint.home.search_vel)
-    return enter(joint, HOME_INITIAL_BACKOFF_WAIT)
+    if not closed and joint.home_sw:
+        return fail(m, joint, number, b"the home switch closed before the joint moved onto it")
+    search(m, joint, vel)
+    return enter(joint, next_state)
+
+
+cdef int state_initial_backoff_start(Motion* m, Joint* joint, int number) noexcept nogil:
+    return begin_search(m, joint, number, 1, -joint.home.search_vel, HOME_INITIAL_BACKOFF_WAIT)
 
 
 cdef int state_initial_backoff_wait(Motion* m, Joint* joint, int number) noexcept nogil:
@@ -160,12 +167,7 @@ cdef int state_set_coarse_position(Motion* m, Joint* joint, int number) noexcept
 
 
 cdef int state_final_backoff_start(Motion* m, Joint* joint, int number) noexcept nogil:
-    if not settled(m, joint):
-        return 0
-    if not joint.home_sw:
-        return fail(m, joint, number, b"the home switch opened before the joint moved off it")
-    search(m, joint, -joint.home.search_vel)
-    return enter(joint, HOME_FINAL_BACKOFF_WAIT)
+    return begin_search(m, joint, number, 1, -joint.home.search_vel, HOME_FINAL_BACKOFF_WAIT)
 
 
 cdef int state_final_backoff_wait(Motion* m, Joint* joint, int number) noexcept nogil:
@@ -176,12 +178,7 @@ cdef int state_final_backoff_wait(Motion* m, Joint* joint, int number) noexcept 
 
 
 cdef int state_rise_search_start(Motion* m, Joint* joint, int number) noexcept nogil:
-    if not settled(m, joint):
-        return 0
-    if joint.home_sw:
-        return fail(m, joint, number, b"the home switch closed before the joint moved onto it")
-    search(m, joint, joint.home.latch_vel)
-    return enter(joint, HOME_RISE_SEARCH_WAIT)
+    return begin_search(m, joint, number, 0, joint.home.latch_vel, HOME_RISE_SEARCH_WAIT)
 
 
 cdef int state_rise_search_wait(Motion* m, Joint* joint, int number) noexcept nogil:
@@ -189,12 +186,7 @@ cdef int state_rise_search_wait(Motion* m, Joint* joint, int number) noexcept no
 
 
 cdef int state_fall_search_start(Motion* m, Joint* joint, int number) noexcept nogil:
-    if not settled(m, joint):
-        return 0
-    if not joint.home_sw:
-        return fail(m, joint, number, b"the home switch opened before the joint moved off it")
-    search(m, joint, joint.home.latch_vel)
-    return enter(joint, HOME_FALL_SEARCH_WAIT)
+    return begin_search(m, joint, number, 1, joint.home.latch_vel, HOME_FALL_SEARCH_WAIT)
 
 
 cdef int state_fall_search_wait(Motion* m, Joint* joint, int number) noexcept nogil:
@@ -403,12 +395,24 @@ cdef void cancel_homing(Motion* m) noexcept nogil:
     m.home_step = SEQUENCE_IDLE
 
 
+cdef int homing_is_active(Motion* m) noexcept nogil:
+    """Whether a joint is homing, or the sequence of the machine is between two of them."""
+    cdef int n
+    for n in range(m.num_joints):
+        if m.joint[n].home.state != HOME_IDLE:
+            return 1
+    return m.home_step != SEQUENCE_IDLE
+
+
 cdef void update_homed(Motion* m) noexcept nogil:
     cdef int n
-    m.all_homed = m.num_joints > 0
+    cdef int active = 0
+    cdef int homed = 1
     for n in range(m.num_joints):
-        if m.joint[n].active and not m.joint[n].home.homed:
-            m.all_homed = 0
+        if m.joint[n].active:
+            active = 1
+            homed &= m.joint[n].home.homed
+    m.all_homed = active and homed
 
 
 cdef void homing_cycle(Motion* m) noexcept nogil:

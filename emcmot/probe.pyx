@@ -7,7 +7,7 @@ from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MotionState_COORD
 from emcmot.jog cimport stop_jogs
-from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
+from emcmot.homing cimport cancel_homing, homing_is_active
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
 from emcmot.tp.tp cimport tp_abort
@@ -64,14 +64,6 @@ cdef void for_nothing(Motion* m, int away) noexcept nogil:
             b"G38.4 move finished without breaking contact." if away
             else b"G38.2 move finished without making contact.",
         )
-
-
-cdef int homing_is_active(Motion* m) noexcept nogil:
-    cdef int n
-    for n in range(m.num_joints):
-        if m.joint[n].home.homing:
-            return 1
-    return m.home_step != SEQUENCE_IDLE
 
 
 cdef void alarm(Motion* m) noexcept nogil:

@@ -13,8 +13,6 @@ cdef inline char* report(Motion* m, int joint=-1, long move_id=0) noexcept nogil
     cdef EMCMOT_ERROR* slot = &m.errors[m.error_count]
     if m.error_count < ERRORS - 1:
         m.error_count += 1
-    else:
-        m.errors_lost += 1
     slot.nml_type = EMCMOT_ERROR_TYPE
     slot.nml_size = sizeof(EMCMOT_ERROR)
     slot.kind = KIND_ERROR

@@ -13,6 +13,7 @@ from emcmot._messages cimport EMCMOT_COMMAND, EMCMOT_ERROR, EMCMOT_STATUS, MAX_J
 from emcmot.commands cimport run
 from emcmot.controller cimport controller
 from emcmot.core cimport Core
+from emcmot.homing cimport HOME_INDEX_NO_ENCODER_RESET
 from emcmot.state cimport Joint
 
 import numpy as np
@@ -125,9 +126,10 @@ cdef class Motion(Core):
                 if pulses != floor((g.last_true - g.index_at) / g.index_pitch):
                     if where < g.last_true:
                         pulses += 1.0
-                    g.encoder_zero = g.index_at + pulses * g.index_pitch
-                    j.motor_pos_fb = where - g.encoder_zero
                     j.index_enable = 0
+                    if not j.home.flags & HOME_INDEX_NO_ENCODER_RESET:
+                        g.encoder_zero = g.index_at + pulses * g.index_pitch
+                        j.motor_pos_fb = where - g.encoder_zero
             g.last_true = where
             if g.switches:
                 closed = 0

@@ -31,21 +31,19 @@ cdef void stop_spindles(Motion* m) noexcept nogil:
         stop_spindle(&m.spindle[n])
 
 
-cdef void orient_spindle(Spindle* s, double angle, int mode, double timeout) noexcept nogil:
+cdef void orient_spindle(Spindle* s, double angle, int mode) noexcept nogil:
     """Begin an M19: the drive turns the spindle to the angle and answers on is-oriented or orient-fault."""
     stop_spindle(s)
     s.brake = 0
     s.orient = 1
     s.orient_angle = angle
     s.orient_mode = mode
-    s.orient_timeout = timeout
     s.orient_state = ORIENT_IN_PROGRESS
 
 
 cdef void orient_cycle(Motion* m, Spindle* s, int number) noexcept nogil:
     if s.orient_state != ORIENT_IN_PROGRESS:
         return
-    s.orient_timeout -= m.dt
     if s.orient_fault != 0:
         s.orient = 0
         s.orient_state = ORIENT_FAULTED

@@ -150,7 +150,6 @@ ctypedef struct Spindle:
     int32_t direction
     int increasing
     int orient_state
-    double orient_timeout    # s left
     double tap_scale         # 0, or minus what a tap on its way out multiplies the speed by
     # inputs
     double revs
@@ -203,7 +202,6 @@ ctypedef struct Motion:
     int32_t jog_stop_immediate
     int32_t probe_input
     double adaptive_feed
-    double switchkins_type
     int32_t misc_error[MISC_ERRORS]
     int32_t digital_in[MAX_DIO]
     int32_t digital_out[MAX_DIO]
@@ -264,7 +262,6 @@ ctypedef struct Motion:
     double next_vel_max
     int paused
     int stepping
-    int reverse_run
     TpIo pending_io
     int pending_io_set
     int sync_spindle         # -1: moves to come are not synchronised
@@ -305,5 +302,4 @@ ctypedef struct Motion:
     double servo_time_max
     EMCMOT_ERROR errors[ERRORS]
     int error_count
-    int errors_lost
     EMCMOT_STATUS status

@@ -95,6 +95,16 @@ def test_index_homing_repeats_exactly_whatever_the_start() -> None:
     assert max(places) - min(places) < 1e-9
 
 
+def test_an_encoder_that_keeps_its_count_is_homed_to_the_index_within_one_period() -> None:
+    m = mill("free")
+    m.place(0, 10.3, 5.0, 0.0)
+    homing(m, offset=2.0, home=2.0, latch=3.0, flags=USE_INDEX | NO_RESET)
+    assert home(m) == []
+    assert m.true_position(0) == pytest.approx(15.0, abs=2 * 3.0 * DT)
+    assert m["joint.0.motor-pos-fb"] == pytest.approx(4.7, abs=0.01)
+    assert within_limits(m)
+
+
 def test_index_alone_homes_a_joint_without_a_switch() -> None:
     m = mill("free")
     m.place(0, 10.3, 5.0, 0.0)
@@ -260,6 +270,55 @@ def test_homing_is_refused_while_inhibited_and_outside_of_joint_mode() -> None:
     assert "homing-inhibit" in home(m)[0]
     m = mill("coord")
     assert home(m) == ["JOINT_HOME refused: motion is not in joint mode"]
+
+
+def test_a_jog_is_refused_while_a_joint_is_homing_and_homing_goes_on() -> None:
+    m = mill("free")
+    homing(m, home=20.0)
+    m.send(C.JOINT_HOME, joint=0)
+    m.step(100)
+    for joint in (0, 1):
+        assert m.send(C.JOG_CONT, joint=joint, mode=1, vel=-20.0) != 0
+        assert m.errors() == ["can't jog while a joint is homing"]
+    m.run_until_rest()
+    assert m["joint.0.pos-cmd"] == 20.0
+    assert m["joint.0.homed"]
+
+
+def test_homing_ends_the_jogs_that_are_running() -> None:
+    m = mill("free")
+    m.send(C.JOG_CONT, joint=1, mode=1, vel=50.0)
+    m.step(200)
+    homing(m, home=1.0)
+    m.send(C.JOINT_HOME, joint=0)
+    m.run_until_rest()
+    assert m["joint.0.homed"]
+    assert m["joint.1.vel-cmd"] == 0.0
+    assert within_limits(m)
+
+
+def test_an_inactive_joint_is_not_homed() -> None:
+    m = configure(Motion("xyz"))
+    m.send(C.JOINT_DEACTIVATE, joint=1)
+    bring_to(m, "free")
+    assert home(m, 1) == ["can't home a joint that is not active"]
+
+
+def test_an_extra_joint_is_homed_and_then_led_by_its_pin() -> None:
+    m = configure(Motion("xyz", num_extrajoints=1))
+    for code, value in ((C.SET_JOINT_VEL_LIMIT, {"vel": 50.0}), (C.SET_JOINT_ACC_LIMIT, {"acc": 500.0})):
+        m.send(code, joint=3, **value)
+    m.send(C.SET_JOINT_HOMING_PARAMS, joint=3, offset=3.0, home=0.0, home_sequence=0)
+    m.send(C.JOINT_ACTIVATE, joint=3)
+    bring_to(m, "homed")
+    assert m["joint.3.homed"]
+    m["joint.3.posthome-cmd"] = 0.25
+    m.step()
+    assert m["joint.3.motor-pos-cmd"] == pytest.approx(0.25 - 3.0)
+    m["joint.3.motor-pos-fb"] = 99.0
+    m.loopback = False
+    m.step(5)
+    assert m.status.motion_state == 1, "its feedback does not count"
 
 
 def test_unhome_forgets_one_all_or_the_volatile_joints() -> None:

@@ -1,4 +1,4 @@
-"""Motion's HAL pins and parameters are LinuxCNC's, by name, type and direction."""
+"""Motion's HAL pins and parameters are LinuxCNC's, by name, type, direction and first value."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import pytest
 
 from hal._shm import PARAM, PIN
 from hal.realtime import Host
-from hal.values import PARAM_DIR_NAMES, PIN_DIR_NAMES, TYPE_NAMES
+from hal.values import PARAM_DIR_NAMES, PIN_DIR_NAMES, TYPE_NAMES, show_value
 from nml.errors import HalError
 
-# kind, type, direction and name of what LinuxCNC 2.9's motmod makes with these arguments (`halcmd show`)
+# kind, type, direction, name and first value of what LinuxCNC 2.9's motmod makes with these arguments (`halcmd show`)
 LINUXCNC = Path(__file__).parent / "pins_linuxcnc_2_9.txt"
 ARGUMENTS = ["num_joints=3", "num_dio=4", "num_aio=4", "num_spindles=1", "num_misc_error=2", "unlock_joints_mask=4"]
 PLANNER_DEBUG = ("tc.", "traj.")  # parameters of LinuxCNC's own planner's insides
@@ -29,9 +29,12 @@ def host() -> Iterator[Host]:
 def test_pins_and_parameters_are_those_of_linuxcnc(host: Host) -> None:
     host.load("motmod", ARGUMENTS)
     segment = host.hal.segment
-    ours = {("pin", TYPE_NAMES[p.type], PIN_DIR_NAMES[p.dir], p.name) for p in segment.items(PIN)}
-    ours |= {("param", TYPE_NAMES[p.type], PARAM_DIR_NAMES[p.dir], p.name) for p in segment.items(PARAM)}
-    ours = {row for row in ours if not row[3].startswith("servo-thread")}
+    ours = {
+        (kind, TYPE_NAMES[p.type], directions[p.dir], p.name, show_value(p.type, p.get()))
+        for kind, number, directions in (("pin", PIN, PIN_DIR_NAMES), ("param", PARAM, PARAM_DIR_NAMES))
+        for p in segment.items(number)
+        if not p.name.startswith("servo-thread")
+    }
     theirs = {tuple(row.split()) for row in LINUXCNC.read_text().splitlines()}
     theirs = {row for row in theirs if not row[3].startswith(PLANNER_DEBUG)}
     assert ours == theirs
