@@ -17,6 +17,8 @@ PERIOD = 0.001  # s
 VELOCITY = np.array([200.0, 200.0, 100.0])  # mm/s, [JOINT_n]MAX_VELOCITY of the mill
 ACCELERATION = np.array([1000.0, 1000.0, 1000.0])  # mm/s^2
 
+NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
+
 SQUARE = np.array([(0, 0, 0), (20, 0, 0), (20, 20, 0), (0, 20, 0), (0, 0, 0), (0, 0, 5)], dtype=float)
 SUMMARY = re.compile(
     r"time: +(?P<time>\S+)\ndistance: +(?P<distance>[\d.]+) mm\n"
@@ -71,11 +73,32 @@ def test_a_helix_is_cut_as_a_helix(tmp_path):
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
 
 
-@pytest.mark.parametrize("name", ["contour_pockets", "arcs_helices", "drilling"])
+@pytest.mark.parametrize("name", ["arcs_helices", "drilling"])
 def test_our_own_programs_run_within_the_limits(tmp_path, name):
     _, samples = run_recorded(tmp_path, (PROGRAMS / f"{name}.ngc").read_text(), speed=40.0)
     assert len(samples) > 1000
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
+
+
+@pytest.mark.parametrize(
+    ("program", "units"),
+    [
+        (PROGRAMS / "contour_pockets.ngc", "mm"),
+        (PROGRAMS / "surface.ngc", "mm"),
+        (NC_FILES / "3D_Chips.ngc", "mm"),
+        (NC_FILES / "spiral.ngc", "mm"),
+        (NC_FILES / "flowsnake.ngc", "mm"),
+        (NC_FILES / "cds.ngc", "inch"),
+    ],
+    ids=lambda value: getattr(value, "stem", value),
+)
+def test_a_whole_part_is_run_to_its_end(tmp_path, program, units):
+    if not program.is_file():
+        pytest.skip("Debian's linuxcnc-uspace is not installed")
+    run = Run(copy_mill(tmp_path, units=units), "--run", str(program), speed=200.0)
+    assert run.finish() == 0, run.errors
+    assert "worst following error:" in run.output
+    assert traces() == []
 
 
 def test_the_tools_of_a_job_are_counted(tmp_path):
