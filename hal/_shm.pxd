@@ -103,6 +103,7 @@ cdef struct hal_segment:
 cdef class Segment:
     cdef hal_segment* at
     cdef int fd
+    cdef int pid  # of the process that attached
     cdef bytes path
 
     cdef bint _try_attach(self) except -1

@@ -101,6 +101,7 @@ cdef class Segment:
 
     def __init__(self, str name = "hal"):
         self.path = shm_name(name).encode()
+        self.pid = getpid()
         cdef int tries
         for tries in range(ATTACH_TRIES):
             if self._try_attach():
@@ -170,8 +171,10 @@ cdef class Segment:
         cdef struct_stat st
         if self.fd < 0:
             return
-        if flock(self.fd, LOCK_EX | LOCK_NB) == 0 and fstat(self.fd, &st) == 0 and st.st_nlink > 0:
-            shm_unlink(self.path)
+        # After a fork the lock is still the parent's, so a child only closes its copy.
+        if getpid() == self.pid and flock(self.fd, LOCK_EX | LOCK_NB) == 0:
+            if fstat(self.fd, &st) == 0 and st.st_nlink > 0:
+                shm_unlink(self.path)
         close(self.fd)
         self.fd = -1
 

@@ -194,6 +194,22 @@ def test_the_segment_is_private_and_goes_with_its_last_user(own_namespace: str) 
     assert not os.path.exists(path)
 
 
+def test_a_forked_child_does_not_end_its_parents_session(own_namespace: str) -> None:
+    hal = Hal()
+    child = os.fork()
+    if child == 0:
+        hal.close()
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert os.path.exists("/dev/shm" + shm_name("hal"))
+    other = Hal()
+    other.new_signal("s", BIT)
+    assert hal.value("s") is False
+    other.close()
+    hal.close()
+    assert not os.path.exists("/dev/shm" + shm_name("hal"))
+
+
 def test_slots_are_used_again(hal: Hal) -> None:
     for _ in range(3):
         make(hal, ("c.a", BIT, IN), ("c.b", BIT, IN))
