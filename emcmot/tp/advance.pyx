@@ -269,7 +269,8 @@ cdef Phase _curve_phase(TpState* tp, const Span* span) noexcept nogil:
     cdef double x = span.h - tp.u
     cdef double limit = exit_limit(tp, tp.active)
     cdef double low, high, target, room
-    acceleration_range(span, tp.amax, tp.u, tp.w, &low, &high)
+    if not acceleration_range(span, tp.amax, tp.u, tp.w, &low, &high) and tp.held_span == tp.active:
+        low = high = tp.held
     if tp.held_span == tp.active:
         low = fmin(low, tp.held)
         high = fmax(high, tp.held)

@@ -140,9 +140,12 @@ cdef inline void _allow(double factor, double offset, double a, double* low, dou
         high[0] = middle + half
 
 
-cdef void acceleration_range(
+cdef int acceleration_range(
     const Span* span, const double* amax, double u, double w, double* low, double* high) noexcept nogil:
-    """Range of d2u/dt2 that may be held from u, where the square of the speed is w, to the end of a curved span."""
+    """Range of d2u/dt2 that may be held from u, where the square of the speed is w, to the end of a curved span.
+
+    0 where rounding or interpolation leaves none; the range then is the one value that breaks every limit least.
+    """
     cdef double x = span.h - u, t = u / span.h, a, dq, ddq
     cdef int j
     low[0] = -span.acc
@@ -153,8 +156,10 @@ cdef void acceleration_range(
         ddq = span.ddq0[j] + t * (span.ddq1[j] - span.ddq0[j])
         _allow(dq, ddq * w, a, low, high)
         _allow(span.dq1[j] + 2.0 * x * span.ddq1[j], span.ddq1[j] * w, a, low, high)
-    if low[0] > high[0]:                                  # by rounding or interpolation: break every limit least
-        low[0] = high[0] = fmax(high[0], fmin(low[0], 0.0))
+    if low[0] <= high[0]:
+        return 1
+    low[0] = high[0] = fmax(high[0], fmin(low[0], 0.0))
+    return 0
 
 
 cdef double hardest_stop(const Span* span, const double* amax, double u, double w) noexcept nogil:
