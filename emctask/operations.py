@@ -127,7 +127,6 @@ def optional_stop(machine: Sequencer, payload: None) -> None:
 @operation(before=MOTION_AND_IO)
 def program_end(machine: Sequencer, payload: None) -> None:
     """M2, M30: nothing more to do than to have finished everything before."""
-    machine.hooks.program_ended()
 
 
 @operation()

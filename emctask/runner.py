@@ -34,7 +34,6 @@ class Runner:
         self._begin: Callable[[], None] | None = None
         self._pending_error = ""
         self.stepping = False
-        self.ended = False
         self._on_abort = False
         self.serial = 0
         """Serial number of the command that started what is under way; 0: nothing is."""
@@ -48,7 +47,6 @@ class Runner:
 
     def run_program(self, line: int) -> None:
         """Start the loaded program; ``line`` above 1 skips what comes before."""
-        self.ended = False
         self._start(lambda: self._task.plan.start(line), self._task.echo)
 
     def run_mdi(self, text: str) -> None:

@@ -36,9 +36,6 @@ class Hooks(Protocol):
     def pause_here(self) -> None:
         """Pause before the next entry."""
 
-    def program_ended(self) -> None:
-        """M2 or M30 was reached."""
-
     def show_text(self, text: str) -> None:
         """Show a text to the operator."""
 

@@ -212,10 +212,6 @@ class Task:
         """M0, M1, M60: the program waits for the operator."""
         self.runner.pause_at_stop()
 
-    def program_ended(self) -> None:
-        """M2, M30."""
-        self.runner.ended = True
-
     def show_text(self, text: str) -> None:
         """(MSG, ...)."""
         self.operator.display(text)
