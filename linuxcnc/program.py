@@ -169,7 +169,7 @@ class Operator:
 
     def _follow(self, progress: Progress) -> None:
         status = self._status
-        progress.line = status.motion_line or status.current_line
+        progress.line = status.motion_line or status.current_line or progress.line
         progress.reached = max(progress.reached, progress.line)
         progress.position = status.actual_position
         if status.tool_in_spindle != progress.tool:

@@ -61,7 +61,7 @@ def make_display(title: str) -> Iterator[Display]:
     from rich.progress import BarColumn, TextColumn
     from rich.progress import Progress as Bar
 
-    columns = (TextColumn("{task.fields[title]}"), BarColumn(), TextColumn("{task.description}"))
+    columns = (TextColumn("{task.fields[title]}"), BarColumn(bar_width=16), TextColumn("{task.description}"))
     # Without rich's refresh thread: the launcher may have to fork a new guard
     with Bar(*columns, console=Console(stderr=True), auto_refresh=False) as bar:
         task = bar.add_task("", total=1.0, title=title)
