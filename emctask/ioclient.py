@@ -15,7 +15,7 @@ from nml.emc.tooltable import EMC_TOOL_TABLE
 from nml.message import Command
 
 DONE, EXEC, ERROR = 1, 2, 3
-DEAD_S = 0.8  # host time without a new status after which io counts as gone
+DEAD_S = 0.85  # host time without a new status after which io counts as gone
 
 
 class IoClient:

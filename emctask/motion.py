@@ -29,8 +29,8 @@ MOVE = Span(EMCMOT_COMMAND, "command", "tolerance")
 termCond, mode, tolerance."""
 
 HEARTBEAT_S = 0.1  # host time between two signs of life when there is nothing else to send
-WATCHDOG_S = 0.5  # host time without a sign of life from task after which motion stops the machine
-DEAD_S = 0.7  # host time without a new status after which motion counts as gone
+WATCHDOG_S = 0.8  # host time without a sign of life from task after which motion stops the machine
+DEAD_S = 0.85  # host time without a new status after which motion counts as gone
 RESERVE = 10  # places of the planner's queue that task leaves free
 
 
