@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from test_planner import Program
 
 from emcmot.tp.planner import TERM_TANGENT
+from tests.support.planned import Program
 
 
 def circle_of_short_moves(radius, step, decimals, turn=1.0, **options):

@@ -52,7 +52,7 @@ def test_a_thread_keeps_its_pitch_however_the_spindle_turns(rps):
     z, revs = lathe.until_done().T
     cutting = (z < -3.0) & (z > -28.0)
     error = -z[cutting] - 1.5 * revs[cutting]
-    assert np.ptp(error) < 0.02
+    assert np.ptp(error) < 0.005
 
 
 def test_passes_that_begin_at_different_times_meet_in_one_groove():
