@@ -17,7 +17,7 @@ from posix.time cimport CLOCK_MONOTONIC, TIMER_ABSTIME, clock_gettime, clock_nan
 from posix.unistd cimport usleep
 
 from hal._shm cimport Item, Segment, Thread, hal_segment, hal_thread
-from hal.cell cimport hal_at, hal_function, hal_pin
+from hal.cell cimport hal_at, hal_cell, hal_function, hal_pin
 
 from nml.errors import HalError
 
@@ -92,8 +92,9 @@ cdef struct Call:
     hal_function code
     void* arg
     hal_pin time  # s32, ns
-    hal_pin tmax  # s32, ns
-    hal_pin increased  # bit
+    hal_cell* tmax  # s32, ns; a parameter's cell never moves
+    hal_cell* increased  # bit
+    bint was_increased
 
 cdef struct Calls:
     int count
@@ -159,11 +160,11 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
         took = <int32_t>((after - before) * ns_per_tick)
         before = after
         hal_at(call.time).s = took
-        if took > hal_at(call.tmax).s:
-            hal_at(call.tmax).s = took
-            hal_at(call.increased).b = 1
-        elif hal_at(call.increased).b:
-            hal_at(call.increased).b = 0
+        if took > call.tmax.s:
+            call.tmax.s = took
+            call.increased.b = call.was_increased = 1
+        elif call.was_increased:
+            call.increased.b = call.was_increased = 0
     took = <int32_t>((after - begin) * ns_per_tick)
     hal_at(thread.time).s = took
     if took > hal_at(thread.tmax).s:
@@ -252,7 +253,8 @@ cdef class NativeThread:
             raise MemoryError
         fresh.count = len(calls)
         for i, (code, arg, time, tmax, increased) in enumerate(calls):
-            fresh.call[i] = Call(<hal_function>code, <void*>arg, <hal_pin>time, <hal_pin>tmax, <hal_pin>increased)
+            fresh.call[i] = Call(<hal_function>code, <void*>arg, <hal_pin>time, hal_at(<hal_pin>tmax),
+                                 hal_at(<hal_pin>increased), True)
         old = swap_calls(&self.thread.calls, fresh)
         if not self.pause():
             return False

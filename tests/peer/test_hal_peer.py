@@ -28,8 +28,8 @@ COMPONENTS = """
     logic:personality=0x306 lowpass lut5 maj3 match8 minmax mult2 mux16 mux2 mux4 mux8 near not offset oneshot or2
     pid:num_chan=1 pwmgen:output_type=0,1,2 sample_hold sampler:cfg=fbsu:depth=9 scale select8 siggen:num_chan=1
     sim_encoder:num_chan=1 sim_home_switch sim_parport sim_spindle stepgen:step_type=0,1,2,5,13
-    streamer:cfg=fbsu:depth=9 sum2 supply:num_chan=1 time timedelay timedelta toggle toggle2nist tof ton tp tristate_bit tristate_float
-    updown wcomp xor2
+    streamer:cfg=fbsu:depth=9 sum2 supply:num_chan=1 time timedelay timedelta toggle toggle2nist tof ton tp
+    tristate_bit tristate_float updown wcomp xor2
 """
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
 
