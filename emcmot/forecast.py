@@ -188,7 +188,7 @@ def traces(result: Forecast) -> dict[str, NDArray[Any]]:
 def draw(traced: dict[str, NDArray[Any]], path: Path) -> None:
     """A picture of the traces of the axes that move."""
     try:
-        from matplotlib.figure import Figure  # type: ignore[import-not-found]
+        from matplotlib.figure import Figure
     except ImportError:
         raise ConfigError("pictures need the package matplotlib: pip install matplotlib") from None
     moving = [axis for axis in range(9) if np.ptp(traced["position"][:, axis]) > 0]
