@@ -32,6 +32,38 @@ def _lines(m: Motion, rng: random.Random) -> None:
         _line(m, rng)
 
 
+def _arc(m: Motion, rng: random.Random) -> None:
+    x, y = m["axis.x.pos-cmd"], m["axis.y.pos-cmd"]
+    m.send(
+        C.SET_CIRCLE,
+        id=rng.randrange(1, 1000),
+        pos=(x, y, rng.uniform(-20, 20), 0, 0, 0, 0, 0, 0),
+        center=(x + rng.uniform(-20, 20), y + rng.uniform(1, 20), 0),
+        normal=(0, 0, 1),
+        turn=rng.choice([-2, -1, 0, 1]),
+        vel=rng.uniform(1, 150),
+        ini_maxvel=VEL,
+        acc=1000.0,
+        termCond=2,
+        motion_type=3,
+    )
+
+
+def _probe(m: Motion, rng: random.Random) -> None:
+    pos = [rng.uniform(-60, 60) for _ in range(3)] + [0.0] * 6
+    m.send(C.PROBE, id=1, pos=pos, vel=rng.uniform(1, 80), ini_maxvel=VEL, acc=1000.0, probe_type=rng.randrange(4))
+
+
+def _eoffset(m: Motion, rng: random.Random) -> None:
+    m["axis.z.eoffset-counts"] = rng.randrange(-500, 500)
+    m["axis.z.eoffset-clear"] = rng.random() < 0.1
+
+
+def _spindle(m: Motion, rng: random.Random) -> None:
+    m.send(rng.choice([C.SPINDLE_ON, C.SPINDLE_OFF]), vel=rng.uniform(-500, 500), wait_for_spindle_at_speed=1)
+    m["spindle.0.at-speed"] = rng.random() < 0.5
+
+
 def _jog(m: Motion, rng: random.Random) -> None:
     index = rng.randrange(3)
     m.send(
@@ -84,14 +116,37 @@ def _stop_jog(m: Motion, rng: random.Random) -> None:
     m.send(C.JOG_ABORT, joint=index, axis=index, mode=rng.randrange(2))
 
 
-ACTIONS = [_line, _lines, _jog, _jog, _wheel, _mode, _mode, _switch, _override, _program, _home, _pin, _stop_jog]
+ACTIONS = [
+    *(_line, _lines, _arc, _probe, _jog, _jog, _wheel, _mode, _mode, _switch),
+    *(_override, _program, _home, _pin, _stop_jog, _eoffset, _spindle),
+]
+
+
+def _random_machine(coordinates: str, rng: random.Random) -> Motion:
+    """Homed, with a switch and an index to home by on joint 0, and external offsets on z."""
+    m = bring_to(configure(Motion(coordinates)), "homed")
+    m.place(0, 0.0, 4.0, 0.5)
+    m.add_switch(0, "home", rng.uniform(20, 50), 60.0)
+    m.send(
+        C.SET_JOINT_HOMING_PARAMS,
+        joint=0,
+        home=rng.uniform(-20, 20),
+        search_vel=rng.uniform(10, 80),
+        latch_vel=rng.choice([-5.0, 5.0]),
+        flags=rng.choice([0, 2]),
+    )
+    m.send(C.SET_AXIS_VEL_LIMIT, axis=2, vel=VEL / 2, ext_offset_vel=VEL / 2)
+    m.send(C.SET_AXIS_ACC_LIMIT, axis=2, acc=500.0, ext_offset_acc=500.0)
+    m["axis.z.eoffset-enable"] = 1
+    m["axis.z.eoffset-scale"] = 0.02
+    return m
 
 
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.parametrize("coordinates", ["xyz", "xyyz"])
 def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates: str) -> None:
     rng = random.Random(seed)
-    m = bring_to(configure(Motion(coordinates)), "homed")
+    m = _random_machine(coordinates, rng)
     for _ in range(120):
         action = rng.choice(ACTIONS)
         action(m, rng)
