@@ -284,9 +284,8 @@ cdef class ForecastCanon(MoveCanon):
         self.new_section()
 
     cpdef void set_tool_table_entry(self, int pocket, int tool, double x, double y, double z, double a, double b, double c, double u, double v, double w, double diameter, double frontangle, double backangle, int orientation) except *:
-        cdef double f = self.coords.length(1.0)
-        offset = (x * f, y * f, z * f, a, b, c, u * f, v * f, w * f)
-        self.tools[pocket] = Tool(tool, self.tools[pocket].pocketno, offset, diameter * f, frontangle, backangle, orientation)
+        offset = (x, y, z, a, b, c, u, v, w)
+        self.tools[pocket] = Tool(tool, self.tools[pocket].pocketno, offset, diameter, frontangle, backangle, orientation)
 
     cpdef void comment(self, str text) except *:
         if not text.startswith(OF_INTERPRETER):

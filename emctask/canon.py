@@ -213,12 +213,11 @@ class TaskCanon(WorldModel):
     def set_tool_table_entry(  # type: ignore[no-untyped-def]
         self, pocket, tool, x, y, z, a, b, c, u, v, w, diameter, frontangle, backangle, orientation
     ):
-        length = self.coords.length
         command = EMC_TOOL_SET_OFFSET(
             pocket=pocket,
             toolno=tool,
-            offset=(length(x), length(y), length(z), a, b, c, length(u), length(v), length(w)),
-            diameter=length(diameter),
+            offset=(x, y, z, a, b, c, u, v, w),
+            diameter=diameter,
             frontangle=frontangle,
             backangle=backangle,
             orientation=orientation,

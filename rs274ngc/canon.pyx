@@ -170,7 +170,7 @@ cdef class Canon:
         """Declare the tool of tool-table index ``pocket`` to be in the spindle, without moving anything (M61)."""
 
     cpdef void set_tool_table_entry(self, int pocket, int tool, double x, double y, double z, double a, double b, double c, double u, double v, double w, double diameter, double frontangle, double backangle, int orientation) except *:
-        """Write a tool-table entry (G10 L1, L10, L11); offsets in program units."""
+        """Write a tool-table entry (G10 L1, L10, L11); lengths in machine units."""
 
     cpdef void reload_tooldata(self) except *:
         """Read the tool table anew (G10 L0)."""

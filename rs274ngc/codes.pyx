@@ -248,6 +248,8 @@ cdef int check(State s, Block* b) except -1:
             allowed |= g_code[b.g[group]].words
     if b.motion >= 0:
         allowed |= g_code[b.motion].words
+    if has(b, W_S):
+        allowed |= 1 << W_DOLLAR
     if b.m_count:
         for group in range(M_GROUPS):
             if b.m[group] >= 0:

@@ -105,10 +105,13 @@ cdef class Flow:
                 continue
             strip(s)
             at = skip_number(s)
-            if s.text[at + 1] != c'<' and not c'0' <= s.text[at + 1] <= c'9' and keywords[0] in ("sub", "endsub", ""):
-                continue        # no definition has a computed label, and its parameters may not be there yet
-            found, keyword = self.read_head(&at)
-            if keyword == "sub" and "endsub" in keywords and found != label:
+            try:
+                found, keyword = self.read_head(&at)
+            except InterpError:
+                if s.text[at] == c'<' or c'0' <= s.text[at] <= c'9':
+                    raise
+                continue        # a computed label whose parameters are not there yet
+            if keyword == "sub" and "endsub" in keywords:
                 fail(s, "Nested subroutine definition", at)
             if found == label and keyword in keywords:
                 return at, keyword
@@ -176,15 +179,15 @@ cdef class Flow:
         """A definition that the program runs into: remember it, step over it."""
         if len(self.s.frames) > 1 and self.s.frame.sub:
             fail(self.s, "Nested subroutine definition", at)
-        self.s.subs[label] = (self.source.path, self.source.position, self.source.line)
+        self.s.subs[label] = (self.source.path, self.source.position, self.source.line, False)
         if self.skip_to(label, ("endsub",)) == -1:
             fail(self.s, "File ended with no percent sign or program end")
 
     def do_endsub(self, str label, int at):
-        self.leave(label, at, "endsub")
+        self.leave(label, at)
 
     def do_return(self, str label, int at):
-        self.leave(label, at, "return")
+        self.leave(label, at)
 
     def do_call(self, str label, int at):
         cdef State s = self.s
@@ -231,10 +234,10 @@ cdef class Flow:
         cdef double times = self.value(&i, "repeat")
         if times > 2.0e9:
             fail(self.s, "Too many repetitions", at)
-        if times < 1.0:
+        if times < 0.5:
             self.must_skip_to(label, ("endrepeat",))
         else:
-            self.s.frame.labels[label] = Label("repeat", self.s.line, self.source.position, self.source.line, <long>floor(times))
+            self.s.frame.labels[label] = Label("repeat", self.s.line, self.source.position, self.source.line, <long>floor(times + 0.5))
 
     def do_endrepeat(self, str label, int at):
         cdef Label known = self.known(label, ("repeat",), "", at)
@@ -307,7 +310,7 @@ cdef class Flow:
         cdef State s = self.s
         cdef Frame frame, caller = s.frame
         cdef int k
-        if len(s.frames) > LEVELS_MAX:
+        if len(s.frames) >= LEVELS_MAX:
             fail(s, "Too many subroutine levels")
         caller.source = self.source
         if self.source is not None:
@@ -337,7 +340,9 @@ cdef class Flow:
         cdef Source source
         known = s.subs.get(label)
         if known is not None:
-            path, position, line = known
+            path, position, line, numbered = known
+            if fanuc and not numbered:
+                fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
             if self.source is None or self.source.path != path:
                 self.source = Source(path)
             self.jump(position, line)
@@ -361,12 +366,16 @@ cdef class Flow:
     def find_here(self, str label, bint fanuc):
         """Look for a subroutine from here to the end of the file, then from its beginning."""
         cdef State s = self.s
-        keywords = ("",) if fanuc else ("sub",)
         for start in (None, 0):
             if start is not None:
                 self.jump(0, 0)
-            if self.skip_to(label, keywords) != -1:
-                s.subs[label] = (self.source.path, self.source.position, self.source.line)
+            found = self.skip_to(label, ("sub", ""))
+            if found != -1:
+                if fanuc and found[1]:
+                    fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
+                if not fanuc and not found[1]:
+                    fail(s, "Fanuc 'O....' subroutine must be called with 'M98'")
+                s.subs[label] = (self.source.path, self.source.position, self.source.line, fanuc)
                 return True
         return False
 
@@ -378,7 +387,7 @@ cdef class Flow:
                 return path
         return None
 
-    def leave(self, str label, int at, str keyword):
+    def leave(self, str label, int at):
         """endsub and return, with a value"""
         cdef State s = self.s
         cdef int i = at
@@ -387,8 +396,6 @@ cdef class Flow:
             fail(s, "Fanuc 'O....' subroutine definition must end with 'M99'", at)
         if not s.frame.sub:
             fail(s, f"{s.line}: not in a subroutine definition: '{s.interp.block_text}'", at)
-        if s.frame.sub != label and keyword == "endsub":
-            fail(s, f"{s.line}: no matching label: '{label}' (found '{s.frame.sub}' in line {s.frame.body_line})", at)
         returned = False
         value = 0.0
         if s.text[i] == c'[':
@@ -425,7 +432,7 @@ cdef class Flow:
         """M99: the caller, or the next of its repetitions, goes on; in the main program its first line."""
         cdef State s = self.s
         if s.frame.sub and not s.frame.fanuc:
-            fail(s, "Found 'M99' instead of 'O endsub' after 'O sub'")
+            fail(s, "'O.... endsub' or 'O.... return' must follow 'O.... sub' subroutine definition")
         if not s.frame.sub:
             if self.source is not None:
                 self.jump(0, 0)

@@ -291,7 +291,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
     index = find_tool(s, number, b.at[W_P])
     entry = s.canon.get_external_tool_table(index)
     offset = list(entry.offset)
-    diameter = entry.diameter * parameter_factor(s, 0)
+    diameter = entry.diameter
     front, back, orientation = entry.frontangle, entry.backangle, entry.orientation
     if l == 1 and not (b.words & (M_AXES | (1 << W_R) | (1 << W_I) | (1 << W_J) | (1 << W_Q))):
         return fail(s, "G10 L1 without offsets has no effect", b.g_at[0])
@@ -319,7 +319,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
                 value = fixture[k] * parameter_factor(s, k) if l == 11 else s.origin[k]
                 offset[k] = (point[k] - wanted[k] - value) / parameter_factor(s, k)
     if has(b, W_R):
-        diameter = b.value[W_R] * 2.0
+        diameter = b.value[W_R] * 2.0 / parameter_factor(s, 0)
     front, back = value_or(b, W_I, front), value_or(b, W_J, back)
     if has(b, W_Q):
         if l == 1 and (b.value[W_Q] < 0.0 or b.value[W_Q] > 9.0):
@@ -332,12 +332,8 @@ cdef int set_tool(State s, Block* b, int l) except -1:
 
 
 cdef int write_tool(State s, int index, int number, list offset, double diameter, double front, double back, int orientation) except -1:
-    cdef int k
-    cdef double[9] o
-    for k in range(9):
-        o[k] = <double>offset[k] * parameter_factor(s, k)
-    s.canon.set_tool_table_entry(index, number, o[0], o[1], o[2], o[3], o[4], o[5], o[6], o[7], o[8], diameter, front, back,
-                                 orientation)
+    x, y, z, a, b, c, u, v, w = offset
+    s.canon.set_tool_table_entry(index, number, x, y, z, a, b, c, u, v, w, diameter, front, back, orientation)
     return 0
 
 

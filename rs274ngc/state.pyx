@@ -60,7 +60,7 @@ cdef class State:
         self.origin_index = 1
         self.feed_override = self.feed_hold = True
         self.selected_index = -1
-        self.selected_tool = -1
+        self.selected_tool = 0
         for i in range(SPINDLES):
             self.turning[i] = CANON_STOPPED
             self.speed_override[i] = True
