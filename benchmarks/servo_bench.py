@@ -2,16 +2,19 @@
 
     python -m benchmarks.servo_bench [--periods 200000]
 
-Only motion itself is timed (command handler and controller in the stepped simulator); `servo_time` in EMCMOT_STATUS
-tells what a period takes in the realtime host, with pins and buffers.
+The first rows time motion itself (the stepped simulator). The last are what motion-controller measures of itself in a
+realtime host, an idle machine at 1 kHz: with its HAL pins copied in and out and its status published.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import time
 
 from emcmot.sim import Motion
+from hal.realtime import Host
+from nml.channel import Channel
 from nml.emc.emcmot import MotCommand as C
 
 CHUNK = 50  # periods timed together: one alone is near the clock's resolution
@@ -58,6 +61,38 @@ def measure(coordinates: str, periods: int, cutting: bool) -> list[float]:
     return figures
 
 
+def in_the_host(coordinates: str, seconds: float = 3.0) -> list[float]:
+    """Microseconds of motion-controller, for as many periods as a reader of the status gets hold of."""
+    os.environ["PYEMC_NAMESPACE"] = f"servo_bench_{os.getpid()}"
+    host = Host()
+    status = Channel(None, "emcmotStatus", "emc")
+    try:
+        host.load("trivkins", [f"coordinates={coordinates}"])
+        host.load("motmod", [f"num_joints={len(coordinates)}"])
+        for joint in range(len(coordinates)):
+            host.hal.net(f"pos{joint}", [f"joint.{joint}.motor-pos-cmd", f"joint.{joint}.motor-pos-fb"])
+        for function in ("motion-command-handler", "motion-controller"):
+            host.add_function(function, "servo-thread")
+        host.hal.start_threads()
+        figures, end = [], time.monotonic() + seconds
+        while time.monotonic() < end:
+            message = status.read()
+            if message is not None:
+                figures.append(message.servo_time * 1e6)
+            time.sleep(0.0005)
+        return figures
+    finally:
+        host.close()
+        status.close()
+
+
+def show(coordinates: str, doing: str, figures: list[float]) -> None:
+    """One row of a table."""
+    figures = sorted(figures)
+    marks = [sum(figures) / len(figures), figures[len(figures) // 2], figures[int(len(figures) * 0.999)], figures[-1]]
+    print(f"{len(coordinates):>6}{doing:>9}" + "".join(f"{value:10.2f}" for value in marks))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--periods", type=int, default=200_000)
@@ -66,11 +101,9 @@ def main() -> None:
     print(f"{'joints':>6}{'doing':>9}{'average':>10}{'median':>10}{'99.9 %':>10}{'worst':>10}")
     for coordinates in ("xyz", "xyzabcuvw"):
         for cutting in (False, True):
-            figures = sorted(measure(coordinates, periods, cutting))
-            average = sum(figures) / len(figures)
-            marks = [average, figures[len(figures) // 2], figures[int(len(figures) * 0.999)], figures[-1]]
-            doing = "cutting" if cutting else "idle"
-            print(f"{len(coordinates):>6}{doing:>9}" + "".join(f"{value:10.2f}" for value in marks))
+            show(coordinates, "cutting" if cutting else "idle", measure(coordinates, periods, cutting))
+    for coordinates in ("xyz", "xyzabcuvw"):
+        show(coordinates, "in host", in_the_host(coordinates))
 
 
 if __name__ == "__main__":
