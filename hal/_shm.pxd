@@ -1,118 +1,12 @@
-"""Layout of the HAL's shared segment; see ``_shm.pyx`` for its rules. Threads and components cimport it."""
+"""Typed views of the records of the HAL's segment; see ``_shm.pyx``. Threads and Python's items cimport it."""
 
-from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t, uint64_t
+from libc.stdint cimport int32_t
 
+from hal._mapping cimport Mapping, hal_comp, hal_funct, hal_item, hal_record, hal_segment, hal_signal, hal_thread, hal_word
 from hal.cell cimport hal_cell
 
-cdef extern from "<pthread.h>" nogil:
-    ctypedef struct pthread_mutex_t:
-        pass
 
-cdef enum:
-    NAME_SIZE = 48  # with the closing zero
-    ARGS_SIZE = 2048
-    MAX_COMPS = 1024
-    MAX_PINS = 16384
-    MAX_PARAMS = 8192
-    MAX_SIGNALS = 8192
-    MAX_FUNCTS = 4096
-    MAX_THREADS = 32
-    MAX_CALLS = 1024  # functions in one thread
-
-# Every record starts with `state`: 0 is a free slot; it is stored last when a record is made and first when it is freed,
-# so a killed process leaves a whole record or none.
-cdef struct hal_record:
-    int32_t state
-    uint32_t hash  # of the name
-    char name[NAME_SIZE]
-
-# What native code reaches through a `hal_pin`. The words of a component lie side by side, so that few cache lines hold them.
-cdef struct hal_word:
-    int64_t link  # bytes from here to the cell in use: the next one, or a signal's
-    hal_cell cell
-
-cdef struct hal_item:  # a pin or a parameter; its word has the same index
-    hal_record head
-    hal_cell safe  # taken when the owner dies, where has_safe
-    int32_t owner  # component id
-    int32_t signal  # index + 1 of the signal, 0 unlinked; `link` follows from it
-    uint32_t alias_hash
-    uint8_t type
-    uint8_t dir
-    uint8_t has_safe
-    char alias[NAME_SIZE]
-
-cdef struct hal_signal:
-    hal_record head
-    uint8_t type
-
-cdef struct hal_comp:
-    hal_record head
-    int32_t id
-    int32_t pid
-    uint64_t start  # of the process, in clock ticks since boot: tells a pid from its next user
-    uint8_t kind
-    uint8_t ready
-    char args[ARGS_SIZE]
-
-cdef struct hal_funct:
-    hal_record head
-    int32_t owner
-    int32_t users
-    uint8_t uses_fp
-    uint8_t reentrant
-    uint64_t code  # in the realtime host's memory
-    uint64_t arg
-
-cdef struct hal_thread:
-    hal_record head
-    int32_t owner
-    int32_t priority
-    int64_t period_ns
-    int32_t uses_fp
-    int32_t calls
-    int32_t call[MAX_CALLS]  # indices into functs, in calling order
-    uint64_t cycles
-    uint64_t overruns
-    uint8_t running  # inside its functions
-
-cdef struct hal_segment:
-    uint64_t magic  # written last
-    uint32_t version
-    uint32_t size
-    pthread_mutex_t mutex
-    int32_t mutex_pid
-    int32_t next_id
-    int32_t locks  # HAL_LOCK_* bits
-    int32_t threads_running
-    int32_t host_pid
-    uint64_t host_start
-    int32_t recoveries  # times that a killed process was found to hold the mutex
-    int32_t used_comps, used_pins, used_params, used_signals, used_functs, used_threads  # slots ever used
-    hal_word pin_words[MAX_PINS]
-    hal_word param_words[MAX_PARAMS]
-    hal_cell cells[MAX_SIGNALS]
-    hal_comp comps[MAX_COMPS]
-    hal_item pins[MAX_PINS]
-    hal_item params[MAX_PARAMS]
-    hal_signal signals[MAX_SIGNALS]
-    hal_funct functs[MAX_FUNCTS]
-    hal_thread threads[MAX_THREADS]
-
-
-cdef class Segment:
-    cdef hal_segment* at
-    cdef int fd
-    cdef int pid  # of the process that attached
-    cdef bytes path
-
-    cdef bint _try_attach(self) except -1
-    cdef bint _leave(self)
-    cdef void _make(self)
-    cpdef detach(self)
-    cdef int take(self) except -1
-    cdef void give(self) noexcept
-    cdef void _repair(self)
+cdef class Segment(Mapping):
     cdef hal_record* _slot(self, hal_record* first, size_t stride, int32_t* used, int limit, str what) except NULL
     cdef hal_record* _find(self, hal_record* first, size_t stride, int used, str name)
     cdef Item _item(self, hal_item* item)

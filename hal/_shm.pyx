@@ -1,71 +1,18 @@
-"""The HAL's shared segment: records of components, pins, parameters, signals, functions and threads.
+"""The records of the HAL's segment: components, pins, parameters, signals, functions and threads.
 
-Every process of a controller that speaks HAL maps it (`Segment`), and ``hal.core`` keeps the rules. Here are only storage,
-the mutex and typed views of the records.
-
-* Records lie in fixed arrays and hold indices and distances, never addresses, so the segment works wherever it is mapped.
-* One robust mutex guards structural changes. A process killed while holding it is noticed by the next one, which repairs
-  what is derived (`link` words follow from `signal` indices) and goes on. Values of pins and signals need no lock.
-* Each process holds a shared flock on the segment while it is attached; the last to leave removes it.
+`Segment` makes and finds them in the mapped memory (``hal._mapping``), and each has a typed view here. ``hal.core`` keeps
+the rules.
 """
 
-from libc.errno cimport errno
+from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t, uint64_t
 from libc.string cimport memcpy, memset, strcmp, strncpy
-from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_RDWR
-from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, munmap
-from posix.time cimport CLOCK_REALTIME, clock_gettime, timespec
-from posix.unistd cimport close, ftruncate, getpid, usleep
+
+from hal._mapping cimport (
+    ARGS_SIZE, MAX_CALLS, MAX_COMPS, MAX_FUNCTS, MAX_PARAMS, MAX_PINS, MAX_SIGNALS, MAX_THREADS, NAME_SIZE, load_state,
+    point, store_state, word_of,
+)
 
 from nml.errors import HalError
-from nml.namespace import shm_name
-
-cdef extern from "<errno.h>" nogil:
-    int EOWNERDEAD, ETIMEDOUT
-
-cdef extern from "<sys/mman.h>" nogil:
-    int shm_open(const char* name, int flags, unsigned int mode)
-    int shm_unlink(const char* name)
-
-cdef extern from "<sys/file.h>" nogil:
-    int flock(int fd, int operation)
-    int LOCK_SH, LOCK_EX, LOCK_NB, LOCK_UN
-
-cdef extern from "<sys/stat.h>" nogil:
-    ctypedef struct struct_stat "struct stat":
-        long st_nlink
-        long st_size
-    int fstat(int fd, struct_stat* buf)
-
-cdef extern from "<pthread.h>" nogil:
-    ctypedef struct pthread_mutexattr_t:
-        pass
-    int PTHREAD_PROCESS_SHARED, PTHREAD_MUTEX_ROBUST, PTHREAD_MUTEX_RECURSIVE
-    int pthread_mutexattr_init(pthread_mutexattr_t*)
-    int pthread_mutexattr_setpshared(pthread_mutexattr_t*, int)
-    int pthread_mutexattr_setrobust(pthread_mutexattr_t*, int)
-    int pthread_mutexattr_settype(pthread_mutexattr_t*, int)
-    int pthread_mutex_init(pthread_mutex_t*, pthread_mutexattr_t*)
-    int pthread_mutex_timedlock(pthread_mutex_t*, timespec*)
-    int pthread_mutex_unlock(pthread_mutex_t*)
-    int pthread_mutex_consistent(pthread_mutex_t*)
-
-cdef extern from *:
-    """
-    #define store_release(where, value) __atomic_store_n(where, value, __ATOMIC_RELEASE)
-    #define load_acquire(where) __atomic_load_n(where, __ATOMIC_ACQUIRE)
-    """
-    void store_state "store_release"(int32_t* where, int32_t value) nogil
-    int32_t load_state "load_acquire"(int32_t* where) nogil
-    void store_link "store_release"(int64_t* where, int64_t value) nogil
-    void store_magic "store_release"(uint64_t* where, uint64_t value) nogil
-    uint64_t load_magic "load_acquire"(uint64_t* where) nogil
-
-cdef enum:
-    VERSION = 1
-    ATTACH_TRIES = 5000  # of 1 ms: how long another process may take to set the segment up
-    LOCK_SECONDS = 5
-
-cdef uint64_t MAGIC = 0x6C61682E636D6579
 
 # The type and direction numbers of LinuxCNC's hal.h
 BIT, FLOAT, S32, U32, PORT, S64, U64 = 1, 2, 3, 4, 5, 6, 7
@@ -93,183 +40,8 @@ cdef int set_name(char* field, uint32_t* hash, str name) except -1:
     return 0
 
 
-cdef class Segment:
-    """The mapped segment of this process's namespace; as a context manager it holds the mutex."""
-
-    def __cinit__(self):
-        self.fd = -1
-
-    def __init__(self, str name = "hal"):
-        self.path = shm_name(name).encode()
-        self.pid = getpid()
-        cdef int tries
-        for tries in range(ATTACH_TRIES):
-            if self._try_attach():
-                return
-            with nogil:
-                usleep(1000)
-        raise HalError(f"cannot attach the HAL segment {self.path.decode()}: another process does not finish making it")
-
-    cdef bint _try_attach(self) except -1:
-        cdef struct_stat st
-        cdef void* where
-        cdef bint fresh
-        self.fd = shm_open(self.path, O_RDWR | O_CREAT | O_CLOEXEC, 0o600)
-        if self.fd < 0:
-            raise HalError(f"cannot open shared memory {self.path.decode()} (errno {errno})", -errno)
-        flock(self.fd, LOCK_SH)
-        fstat(self.fd, &st)
-        fresh = st.st_size == 0
-        if st.st_nlink == 0 or (fresh and flock(self.fd, LOCK_EX | LOCK_NB) != 0):
-            return self._leave()
-        if fresh and ftruncate(self.fd, sizeof(hal_segment)) != 0:
-            raise HalError("no room for the HAL segment in shared memory", -12)
-        if not fresh and st.st_size != sizeof(hal_segment):
-            self._leave()
-            raise HalError(f"{self.path.decode()} was made by another version; end that session (halrun -U) first")
-        where = mmap(NULL, sizeof(hal_segment), PROT_READ | PROT_WRITE, MAP_SHARED, self.fd, 0)
-        if where == MAP_FAILED:
-            raise HalError("cannot map the HAL segment", -12)
-        self.at = <hal_segment*>where
-        if load_magic(&self.at.magic) != MAGIC:
-            # Only with the exclusive lock: its maker died before it was done.
-            if not fresh and flock(self.fd, LOCK_EX | LOCK_NB) != 0:
-                munmap(self.at, sizeof(hal_segment))
-                self.at = NULL
-                return self._leave()
-            self._make()
-        flock(self.fd, LOCK_SH)
-        return True
-
-    cdef bint _leave(self):
-        close(self.fd)
-        self.fd = -1
-        return False
-
-    cdef void _make(self):
-        cdef pthread_mutexattr_t attr
-        pthread_mutexattr_init(&attr)
-        pthread_mutexattr_setpshared(&attr, PTHREAD_PROCESS_SHARED)
-        pthread_mutexattr_setrobust(&attr, PTHREAD_MUTEX_ROBUST)
-        pthread_mutexattr_settype(&attr, PTHREAD_MUTEX_RECURSIVE)
-        pthread_mutex_init(&self.at.mutex, &attr)
-        self.at.version = VERSION
-        self.at.size = sizeof(hal_segment)
-        self.at.next_id = 2
-        store_magic(&self.at.magic, MAGIC)
-
-    def __dealloc__(self):
-        self.detach()
-        if self.at != NULL:
-            munmap(self.at, sizeof(hal_segment))
-
-    cpdef detach(self):
-        """Stop being a user of the segment; the last one to leave removes it, with all signals in it.
-
-        The memory stays mapped as long as a view of it lives.
-        """
-        cdef struct_stat st
-        if self.fd < 0:
-            return
-        # After a fork the lock is still the parent's, so a child only closes its copy.
-        if getpid() == self.pid and flock(self.fd, LOCK_EX | LOCK_NB) == 0:
-            if fstat(self.fd, &st) == 0 and st.st_nlink > 0:
-                shm_unlink(self.path)
-        close(self.fd)
-        self.fd = -1
-
-    cdef int take(self) except -1:
-        cdef timespec until
-        cdef int code
-        if self.fd < 0:
-            raise HalError("the HAL segment is detached", -22)
-        clock_gettime(CLOCK_REALTIME, &until)
-        until.tv_sec += LOCK_SECONDS
-        with nogil:
-            code = pthread_mutex_timedlock(&self.at.mutex, &until)
-        if code == EOWNERDEAD:
-            self._repair()
-            pthread_mutex_consistent(&self.at.mutex)
-            self.at.recoveries += 1
-        elif code == ETIMEDOUT:
-            raise HalError(f"process {self.at.mutex_pid} has held the HAL mutex for {LOCK_SECONDS} s", -110)
-        elif code != 0:
-            raise HalError(f"cannot take the HAL mutex (error {code})", -code)
-        self.at.mutex_pid = getpid()
-        return 0
-
-    cdef void give(self) noexcept:
-        pthread_mutex_unlock(&self.at.mutex)
-
-    def __enter__(self):
-        self.take()
-        return self
-
-    def __exit__(self, *exc):
-        self.give()
-
-    cdef void _repair(self):
-        """Make `link` words agree with `signal` indices again after a process died in the middle of a change."""
-        cdef int i, signal
-        for i in range(self.at.used_pins):
-            signal = self.at.pins[i].signal
-            if signal and not self.at.signals[signal - 1].head.state:
-                signal = self.at.pins[i].signal = 0
-            point(self.at, &self.at.pins[i], signal)
-
-    # ---- header ----
-
-    def new_id(self) -> int:
-        """The next component number; the caller holds the mutex."""
-        cdef int given = self.at.next_id
-        self.at.next_id += 1
-        return given
-
-    def skip_ids(self, int count) -> None:
-        """Pass over component numbers, as LinuxCNC does for its loader and re-registering shell."""
-        self.at.next_id += count
-
-    @property
-    def attached(self) -> bool:
-        return self.fd >= 0
-
-    @property
-    def address(self) -> int:
-        return <size_t>self.at
-
-    @property
-    def locks(self) -> int:
-        """HAL_LOCK_* bits."""
-        return self.at.locks
-
-    @locks.setter
-    def locks(self, int value):
-        self.at.locks = value
-
-    @property
-    def threads_running(self) -> bool:
-        return self.at.threads_running != 0
-
-    @threads_running.setter
-    def threads_running(self, bint value):
-        store_state(&self.at.threads_running, value)
-
-    @property
-    def host(self) -> tuple:
-        """(pid, start time) of the realtime host; (0, 0) where there is none."""
-        return self.at.host_pid, self.at.host_start
-
-    @host.setter
-    def host(self, tuple value):
-        self.at.host_pid, self.at.host_start = value
-
-    @property
-    def size(self) -> int:
-        return sizeof(hal_segment)
-
-    @property
-    def recoveries(self) -> int:
-        return self.at.recoveries
+cdef class Segment(Mapping):
+    """The mapped segment of this process's namespace, as tables; as a context manager it holds the mutex."""
 
     def used(self) -> dict:
         """By table: records in use, slots ever used, bytes of a record."""
@@ -281,8 +53,6 @@ cdef class Segment:
             "functions": (len(self.functs()), self.at.used_functs, sizeof(hal_funct)),
             "threads": (len(self.threads()), self.at.used_threads, sizeof(hal_thread)),
         }
-
-    # ---- tables ----
 
     cdef hal_record* _slot(self, hal_record* first, size_t stride, int32_t* used, int limit, str what) except NULL:
         """A free slot of a table, cleared."""
@@ -466,21 +236,6 @@ def shown_name(Item item):
 def newest_first(Comp comp):
     """Sort key: components in falling order of number."""
     return -comp.comp.id
-
-
-cdef hal_word* word_of(hal_segment* at, hal_item* item) noexcept nogil:
-    """The word of a pin or parameter."""
-    cdef ssize_t index = item - &at.pins[0]
-    if 0 <= index < MAX_PINS:
-        return &at.pin_words[index]
-    return &at.param_words[item - &at.params[0]]
-
-
-cdef void point(hal_segment* at, hal_item* item, int signal) noexcept nogil:
-    """Aim a pin's link at signal number `signal` - 1, or at the pin's own cell where it is 0."""
-    cdef hal_word* word = word_of(at, item)
-    cdef char* cell = <char*>&word.cell if signal == 0 else <char*>&at.cells[signal - 1]
-    store_link(&word.link, cell - <char*>&word.link)
 
 
 cdef object cell_value(hal_cell* cell, int type):

@@ -16,7 +16,8 @@ from libc.stdlib cimport calloc, free
 from posix.time cimport CLOCK_MONOTONIC, TIMER_ABSTIME, clock_gettime, clock_nanosleep, timespec
 from posix.unistd cimport usleep
 
-from hal._shm cimport Item, Segment, Thread, hal_segment, hal_thread
+from hal._mapping cimport hal_segment, hal_thread
+from hal._shm cimport Item, Segment, Thread
 from hal.cell cimport hal_at, hal_cell, hal_function, hal_pin
 
 from nml.errors import HalError
