@@ -108,6 +108,7 @@ cdef void advance(TpState* tp) noexcept nogil:
     cdef int i
     for i in range(AXES):
         before[i] = tp.pos[i]
+    tp.lead_known = 0
     extend(tp)
     sweep_caps(tp)
     if tp.active < tp.span_tail:

@@ -42,20 +42,30 @@ cdef int waits_for_index(TpState* tp, const Segment* seg) noexcept nogil:
 
 
 cdef double spindle_speed(TpState* tp, const Segment* seg) noexcept nogil:
-    """du/dt that the spindle asks for now."""
-    cdef double speed = fabs(tp.spindle_rps[seg.spindle]) * seg.sync_revs
-    cdef double turned, error, correction
+    """du/dt that the spindle asks for in this period.
+
+    Positions are compared once in a period, at its start, where both are of the same instant.
+    """
     if seg.sync_velocity:
-        return speed
-    turned = fabs(tp.spindle_revs[seg.spindle])
+        return fabs(tp.spindle_rps[seg.spindle]) * seg.sync_revs
+    if not tp.lead_known:
+        tp.lead_rps = _lead(tp, seg)
+        tp.lead_known = 1
+    return tp.lead_rps * seg.sync_revs
+
+
+cdef double _lead(TpState* tp, const Segment* seg) noexcept nogil:
+    """Revolutions per second that the way should make: the spindle's, and what corrects the error."""
+    cdef double rps = fabs(tp.spindle_rps[seg.spindle]), turned = fabs(tp.spindle_revs[seg.spindle])
+    cdef double error, correction
     if tp.chain == CHAIN_ACCELERATING:
-        if sqrt(tp.w) < speed * (1.0 - 1e-9):
-            return seg.vel_max
+        if sqrt(tp.w) < rps * seg.sync_revs * (1.0 - 1e-9):
+            return rps
         tp.chain = CHAIN_FOLLOWING
         tp.chain_origin = turned - tp.chain_revs
-    error = (turned - tp.chain_origin - tp.chain_revs) * seg.sync_revs
-    correction = fmin(DECAY * fabs(error) / tp.dt, sqrt(fabs(error) * _acceleration(tp, seg)))
-    return fmax(0.0, speed + (correction if error > 0.0 else -correction))
+    error = turned - tp.chain_origin - tp.chain_revs
+    correction = fmin(DECAY * fabs(error) / tp.dt, sqrt(fabs(error) * _acceleration(tp, seg) / seg.sync_revs))
+    return fmax(0.0, rps + (correction if error > 0.0 else -correction))
 
 
 cdef double _acceleration(const TpState* tp, const Segment* seg) noexcept nogil:

@@ -162,4 +162,6 @@ ctypedef struct TpState:
     int chain                # Chain: where a chain of position-synchronised moves is
     int index_seen
     double chain_revs        # spindle revolutions that the way travelled in the chain stands for
+    int lead_known           # lead_rps is of this period
+    double lead_rps          # revolutions per second that a chain should make
     double chain_origin      # spindle revolutions at which it would have begun without acceleration
