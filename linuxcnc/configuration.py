@@ -12,6 +12,7 @@ from pathlib import Path
 
 import nml
 from hal.session import find_hal_file
+from linuxcnc.options import Overrides
 from nml import clock, namespace
 from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
@@ -27,6 +28,9 @@ MODULES = {
     "linuxcncrsh": "gui.linuxcncrsh",
     "linuxcncsvr": "nml.net.server",
 }
+# Modules that other builds may replace; ours are built into motion and go by LinuxCNC's names
+PLANNER = ("TRAJ", "TPMOD", "tpmod", "-t")
+HOMING = ("EMCMOT", "HOMEMOD", "homemod", "-m")
 PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
@@ -43,13 +47,17 @@ class HalFile:
 class Configuration:
     """A checked INI file: everything it names exists, or ConfigError says what does not."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, overrides: Overrides | None = None) -> None:
         self.path = path.resolve()
         self.folder = self.path.parent
+        self.overrides = overrides or Overrides()
         self.ini = IniFile(self.path)
         self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
         self.ini.find("TRAJ", "COORDINATES")
+        self._require_built_in(*PLANNER, self.overrides.planner)
+        self._require_built_in(*HOMING, self.overrides.homing)
         self.nml_file = self._nml_file()
+        self._hal_folders = self._existing(self.overrides.hal_folders)
         self.hal_files = self._hal_files()
         self.task = self._command("TASK", "TASK", "milltask")
         self.io = self._command("EMCIO", "EMCIO", "io")
@@ -61,6 +69,21 @@ class Configuration:
         if self.ini.find("DISPLAY", "DISPLAY") is None:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
         return self._command("DISPLAY", "DISPLAY", "linuxcncrsh")
+
+    def _require_built_in(self, section: str, key: str, ours: str, option: str, given: str | None) -> None:
+        """Refuse a planner or homing module other than the one that motion has built in."""
+        name = given or self.ini.find(section, key, ours)
+        if name != ours:
+            where, place = (option, Place("<command line>")) if given else (f"[{section}]{key}", None)
+            raise ConfigError(
+                f"{where} {name}: this build has {ours} only, without parameters", place or self.ini.place(section, key)
+            )
+
+    def _existing(self, folders: tuple[Path, ...]) -> list[Path]:
+        for folder in folders:
+            if not folder.is_dir():
+                raise ConfigError(f"-H {folder}: there is no such folder", Place("<command line>"))
+        return [folder.resolve() for folder in folders]
 
     def _server(self) -> list[str] | None:
         """The NML server, where a buffer is to be reached from elsewhere.
@@ -120,9 +143,10 @@ class Configuration:
         """A HALFILE beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
         words = shlex.split(name)
         place = self.ini.place("HAL", "HALFILE", number)
-        path = find_hal_file(words[0], [self.folder])
+        path = find_hal_file(words[0], [*self._hal_folders, self.folder])
         if path is None:
-            raise ConfigError(f"[HAL]HALFILE = {name}: no such file in {self.folder} or the HAL library", place)
+            folders = ", ".join(map(str, [*self._hal_folders, self.folder]))
+            raise ConfigError(f"[HAL]HALFILE = {name}: no such file in {folders} or the HAL library", place)
         return HalFile(path, words[1:])
 
     def environment(self) -> dict[str, str]:
@@ -134,7 +158,7 @@ class Configuration:
             "INI_FILE_NAME": str(self.path),
             "CONFIG_DIR": str(self.folder),
             "HALLIB_DIR": str(HALLIB),
-            "HALLIB_PATH": f".:{HALLIB}",
+            "HALLIB_PATH": os.pathsep.join([*map(str, self._hal_folders), ".", str(HALLIB)]),
             "LINUXCNC_NCFILES_DIR": str(NC_FILES),
             "PATH": self._search_path(),
             "PYTHONPATH": os.pathsep.join(filter(None, [str(PACKAGES_FOLDER), variables.get("PYTHONPATH")])),

@@ -1,4 +1,7 @@
-"""The HAL files and commands of an INI file, executed by the launcher itself; the first mistake ends the start."""
+"""The HAL files and commands of an INI file, executed by the launcher itself.
+
+The first mistake ends the start, unless the person who started the machine wants to go on after mistakes.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +21,12 @@ class HalFileError(PyemcError):
 
 
 class SetupSession(Session):
-    """A HAL session whose first error ends it."""
+    """A HAL session whose first error ends it, or with ``keep_going`` is only reported."""
 
     def report(self, error: Exception) -> None:
+        if self.keep_going:
+            super().report(error)
+            return
         raise HalFileError(f"{self.place}: {error}") from error
 
 
@@ -30,7 +36,7 @@ def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -
     os.chdir(folder)
     try:
         if ini.find("HAL", "TWOPASS"):
-            if not twopass.run(session, [(file.path, file.arguments) for file in files]):
+            if not twopass.run(session, [(file.path, file.arguments) for file in files]) and not session.keep_going:
                 raise HalFileError("[HAL]TWOPASS: a HAL file failed")
         else:
             _run_in_order(session, files)
@@ -46,5 +52,5 @@ def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -
 def _run_in_order(session: Session, files: list[HalFile]) -> None:
     for file in files:
         with contextlib.suppress(Quit):
-            if not session.run_file(file.path, file.arguments):
+            if not session.run_file(file.path, file.arguments) and not session.keep_going:
                 raise HalFileError(f"{file.path}: failed")

@@ -1,7 +1,8 @@
 """The command ``linuxcnc``: start a machine from an INI file, with its display or to run one program.
 
-Exit codes: 0, a proper end; 1, something was wrong, said in one line on stderr; 130 and 143, stopped by Ctrl-C and by
-SIGTERM. Whatever happens, the machine comes to rest under its limits and nothing of it stays behind.
+Exit codes: 0, a proper end; 1, something was wrong, said in one line on stderr; 2, a wrong command line; 130 and 143,
+stopped by Ctrl-C and by SIGTERM. Whatever happens, the machine comes to rest under its limits and nothing of it
+stays behind.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from linuxcnc.options import overrides, parse
 from nml import clock, namespace
 
 if TYPE_CHECKING:
     from linuxcnc.machine import Machine
 
-COMPATIBLE = {"r": "do not redirect output", "v": "be verbose", "d": "print debug messages", "k": "continue on errors"}
 POLL = 0.05  # host seconds between looks at the processes
 
 
@@ -33,7 +34,7 @@ class Stopped(Exception):
 
 def main(arguments: list[str] | None = None) -> int:
     """Entry point; returns the exit code."""
-    options = _parser().parse_args(arguments)
+    options = parse(arguments)
     try:
         if options.namespace is not None:
             os.environ[namespace.VARIABLE] = options.namespace
@@ -52,19 +53,9 @@ def main(arguments: list[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="linuxcnc", description="Start a CNC machine from an INI file.")
-    parser.add_argument("ini", type=Path, metavar="INI", help="INI file of the machine")
-    parser.add_argument("--run", type=Path, metavar="FILE", help="switch on, home, run this program and end")
-    parser.add_argument("--speed", type=float, metavar="N", help="simulate N times faster than real time")
-    for letter, meaning in COMPATIBLE.items():
-        parser.add_argument(f"-{letter}", action="store_true", help=f"{meaning}; accepted for LinuxCNC's sake")
-    parser.add_argument("--namespace", metavar="NAME", help="name of this machine where several run on one host")
-    return parser
-
-
 def _launch(options: argparse.Namespace) -> int:
     """Run the machine to its end; problems of the user's making become one line."""
+    from linuxcnc import lastused
     from linuxcnc._connection import error
     from linuxcnc.configuration import Configuration
     from linuxcnc.machine import END_SIGNALS, Machine, to_stderr
@@ -72,14 +63,16 @@ def _launch(options: argparse.Namespace) -> int:
     from nml.errors import PyemcError
 
     try:
-        configuration = Configuration(options.ini)
+        ini = _ini_file(options)
+        configuration = Configuration(ini, overrides(options))
         if options.run is not None:
             _readable(options.run)
         else:
             configuration.display()
+            lastused.remember(ini)
         for number in END_SIGNALS:
             signal.signal(number, _stop)
-        with Machine(configuration, to_stderr) as machine:
+        with Machine(configuration, to_stderr, options.talk) as machine:
             machine.start()
             if options.run is not None:
                 print(run_program(machine.check, options.run.resolve()), flush=True)
@@ -89,6 +82,15 @@ def _launch(options: argparse.Namespace) -> int:
         if str(reason):
             print(reason, file=sys.stderr)
         return 1
+
+
+def _ini_file(options: argparse.Namespace) -> Path:
+    """The INI file that was named, started last, or is chosen now."""
+    from linuxcnc import lastused, picker
+
+    if options.ini is not None:
+        return options.ini
+    return lastused.recall_or_refuse() if options.last else picker.pick()
 
 
 def _readable(path: Path) -> None:

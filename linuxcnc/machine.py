@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from linuxcnc.configuration import Configuration
 from linuxcnc.guard import Guard
 from linuxcnc.halsetup import SetupSession, set_up
 from linuxcnc.instance import Instance, ProcessRecord
+from linuxcnc.options import Talk
 from nml import clock
 from nml.channel import Channel
 from nml.errors import PyemcError
@@ -63,9 +65,12 @@ class Child:
 class Machine:
     """All processes of one configuration; use as a context manager, whose end stops and ends everything."""
 
-    def __init__(self, configuration: Configuration, report: Callable[[str], None]) -> None:
+    def __init__(
+        self, configuration: Configuration, report: Callable[[str], None], talk: Talk = Talk.PROBLEMS
+    ) -> None:
         self.configuration = configuration
         self.report = report
+        self.talk = talk
         self.children: list[Child] = []
         self._nml_file = str(configuration.nml_file) if configuration.nml_file else None
         self._environment = configuration.environment()
@@ -75,7 +80,8 @@ class Machine:
         for record in self._instance.remove_leftovers():
             report(f"ended {record.name} (process {record.pid}) of an earlier run that was killed")
         self._guard = Guard(self._instance, self._nml_file)
-        self._session = SetupSession(configuration.ini)
+        self._session = SetupSession(configuration.ini, configuration.overrides.keep_going)
+        self._session.echo = talk >= Talk.COMMANDS
         self._host_record: ProcessRecord | None = None
 
     def __enter__(self) -> Machine:
@@ -112,6 +118,10 @@ class Machine:
 
     def _spawn(self, name: str, command: list[str], *, foreground: bool = False) -> Child:
         """Start one process; in the background it gets a session of its own, so that Ctrl-C reaches only us."""
+        if self.talk >= Talk.COMMANDS:
+            self.report(f"starting {name}: {shlex.join(command)}")
+        elif self.talk >= Talk.STEPS:
+            self.report(f"starting {name}")
         log = self._instance.folder / f"{name}.log"
         with log.open("wb") as output:
             process = subprocess.Popen(

@@ -64,6 +64,7 @@ class Run:
 
     def __init__(self, ini: Path, *options: str, speed: float = 1.0) -> None:
         environment = dict(os.environ)
+        environment["HOME"] = str(ini.parent)
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), environment.get("PYTHONPATH")]))
         self.namespace = environment[namespace.VARIABLE]
         self.process = subprocess.Popen(
