@@ -37,7 +37,7 @@ cdef class Interpreter:
 
     cdef readonly State state
     cdef readonly Flow flow
-    cdef readonly Canon canon
+    cdef public Canon canon
     cdef public object parameter_file
     cdef bint percent, stop_after_block
     cdef readonly int sequence_number
