@@ -1,0 +1,42 @@
+"""The forecast's time of a program is the time that the whole machine's motors move, in servo periods."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from emcmot.forecast import Machine, forecast
+from nml.inifile import IniFile
+from rs274ngc import tooltable
+from tests.support.machine import PROGRAMS, Run, copy_mill, traces
+from tests.support.recorder import hal_text, recorded
+
+pytestmark = pytest.mark.process
+
+SPEED = 20.0
+
+
+def moving_periods(positions: np.ndarray) -> int:
+    """Servo periods in which some axis was told to go elsewhere."""
+    return int(np.count_nonzero(np.any(np.diff(positions[:, :3], axis=0) != 0.0, axis=1)))
+
+
+def forecast_of(ini_file: Path, program: Path):
+    ini = IniFile(ini_file)
+    table = ini.path("EMCIO", "TOOL_TABLE", None)
+    assert table is not None
+    return forecast(ini, program, Machine.from_ini(ini), tooltable.load(table), trace=True)
+
+
+@pytest.mark.parametrize("name", ["arcs_helices", "drilling"])
+def test_the_machine_moves_for_as_long_as_the_forecast_says(tmp_path, name):
+    data = tmp_path / "commands.bin"
+    ini = copy_mill(tmp_path, hal=hal_text(data))
+    expected = forecast_of(ini, PROGRAMS / f"{name}.ngc")
+    run = Run(ini, "--run", str(PROGRAMS / f"{name}.ngc"), speed=SPEED)
+    assert run.finish() == 0, run.errors
+    motion = sum(seconds for _, _, seconds, _ in expected.sections)
+    moved = moving_periods(recorded(data))
+    assert moved == pytest.approx(moving_periods(expected.positions), rel=0.01)
+    assert moved * expected.period == pytest.approx(motion, rel=0.01)
+    assert traces() == []
