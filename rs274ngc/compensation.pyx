@@ -42,6 +42,7 @@ cdef class Move:
     cdef double su, sv      # start
     cdef double cu, cv      # centre of an arc
     cdef double du, dv      # direction of a line as programmed; 0, 0: not in the plane
+    cdef bint entry         # a line that leads to the compensated path: it may end anywhere
 
 
 cdef class Pending:
@@ -73,7 +74,7 @@ cdef class Pending:
                 after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
                 if after > before + TINY:
                     return fail(s, "Arc move in concave corner cannot be reached by the tool without gouging")
-            elif (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
+            elif not move.entry and (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
                 return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
                                "cannot be reached by the tool without gouging")
             move.end[self.u], move.end[self.v] = u, v
@@ -372,6 +373,7 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
     if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE and code == 10:
         outside(s, p, c)
     move.du, move.dv = du, dv
+    move.entry = s.comp_first
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
     move.end[p.u], move.end[p.v] = end[p.u] + nu, end[p.v] + nv
     return done(s, p, move, end)

@@ -34,7 +34,7 @@ cdef int set_plane(State s, Block* b, int code) except -1:
 
 
 cdef int set_units(State s, Block* b, int code) except -1:
-    """G20, G21: everything that the interpreter remembers as a length is converted."""
+    """G20, G21: what the interpreter remembers as a length is converted; a tool offset keeps its number, as in LinuxCNC."""
     cdef int units = INCHES if code == 200 else MM
     cdef double factor = 1.0 / 25.4 if units == INCHES else 25.4
     cdef int i
@@ -47,7 +47,6 @@ cdef int set_units(State s, Block* b, int code) except -1:
             s.pos[i] *= factor
             s.origin[i] *= factor
             s.g92[i] *= factor
-            s.tool[i] *= factor
     s.comp_x *= factor
     s.comp_y *= factor
     s.comp_z *= factor

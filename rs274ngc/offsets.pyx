@@ -239,6 +239,7 @@ cdef int set_origin(State s, Block* b, int l) except -1:
     """L2: the origin itself; L20: the origin that gives the present position these coordinates"""
     cdef double[9] point
     cdef double[9] wanted
+    cdef double[9] old
     cdef double value, rotation
     cdef double* stored
     cdef int k, index = <int>b.value[W_P]
@@ -273,11 +274,26 @@ cdef int set_origin(State s, Block* b, int l) except -1:
     if index != s.origin_index:
         s.canon.comment("interpreter: setting coordinate system origin")
         return 0
+    memcpy(old, s.origin, sizeof(old))
+    rotation = s.rotation
     activate_origin(s, index)
-    to_program(s, point)
+    turn_position(s, old, rotation)
     send_origin(s)
     s.canon.set_xy_rotation(s.rotation)
     return 0
+
+
+cdef void turn_position(State s, const double* origin, double rotation) noexcept:
+    """After G10 on the active system, until now with ``origin`` and ``rotation``: G92 does not turn, as in LinuxCNC."""
+    cdef double[9] point
+    cdef int k
+    memcpy(point, s.pos, sizeof(point))
+    rotate(&point[0], &point[1], rotation)
+    for k in range(9):
+        point[k] += origin[k] - s.origin[k]
+    rotate(&point[0], &point[1], -s.rotation)
+    memcpy(s.pos, point, sizeof(s.pos))
+    s.comp_x, s.comp_y, s.comp_z = point[0], point[1], point[2]
 
 
 cdef int set_tool(State s, Block* b, int l) except -1:

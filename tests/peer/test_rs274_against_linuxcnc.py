@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,54 @@ def both(program: Path, folder: Path) -> tuple[subprocess.CompletedProcess[str],
             )
         )
     return results[0], results[1]
+
+
+AWKWARD = {
+    "rotating the active system while G92 is in force": """\
+        g0 x3 y4 z1
+        g92 x1 y2
+        g10 l2 p1 r30
+        (debug,#5420 #5421 #5422)
+        g10 l2 p1 x2 y7 z1 r10
+        g43.1 x1 y2 z5
+        g10 l2 p1 x7 y.7 z1 r20
+        (debug,#5420 #5421 #5422)
+        g10 l20 p1 x7
+        (debug,#5420 #5421 #5422)
+        g55
+        g91 g0 x1""",
+    "changing units while a tool offset is in force": """\
+        g43.1 z3 x1
+        g20
+        g0 x1 y1 z1
+        g21
+        (debug,#5420 #5421 #5422)
+        g20
+        g49
+        (debug,#5420 #5421 #5422)
+        g43 h1
+        g21
+        g91 g0 x1
+        g28""",
+    "a corner that would pull the entry move back": """\
+        g0 x0 y0
+        g41.1 d.3
+        g1 x.2 y0
+        g1 x-3.3 y-.5
+        g1 x-5 y3
+        g40
+        g1 x0 y0""",
+}
+"""Programs that random ones seldom write, and in which the two once differed."""
+
+
+@pytest.mark.parametrize("what", AWKWARD)
+def test_awkward_programs_give_the_same_calls(what: str, tmp_path: Path) -> None:
+    program = tmp_path / "program.ngc"
+    program.write_text(f"g21 g90 g17 g94 f100\n{textwrap.dedent(AWKWARD[what])}\nm2\n")
+    theirs, ours = both(program, tmp_path)
+    assert calls(ours.stdout) == calls(theirs.stdout)
+    assert refusal(ours.stderr) == refusal(theirs.stderr)
 
 
 @pytest.mark.parametrize("name", CORPUS)
