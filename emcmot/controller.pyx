@@ -40,7 +40,7 @@ from emcmot.tp.tp cimport (
     tp_set_rapid_scale,
     tp_take_io,
 )
-from emcmot.world cimport command_world, update_world_feedback, world_from_joints
+from emcmot.world cimport CHASE_LOST, command_world, update_world_feedback, world_from_joints
 
 cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
@@ -194,6 +194,10 @@ cdef void move_coord(Motion* m) noexcept nogil:
     if command_world(m, pose) != 0:
         fall_to_free(m)
         move_free(m)
+    elif m.chasing == CHASE_LOST and not m.stopping:
+        stop_all(m)
+        m.coord_error = 1
+        snprintf(report(m), TEXT_SIZE, b"A joint can't follow the path within its velocity and acceleration limits: motion stopped")
 
 
 cdef void move(Motion* m) noexcept nogil:

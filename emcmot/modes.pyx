@@ -4,7 +4,7 @@ Commands only say what is wanted; ``set_mode`` carries it out at the first perio
 change of mode ever makes a joint's command jump or break its limits: what moves is first brought to rest by whoever moves it.
 """
 
-from libc.math cimport isfinite
+from libc.math cimport fabs, isfinite
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MotionState_COORD, MotionState_FREE, MotionState_TELEOP
@@ -21,16 +21,28 @@ from emcmot.tp.tp cimport TP_OK, tp_abort, tp_set_pos
 from emcmot.world cimport align_joints, world_from_joints
 
 
+cdef int joints_have_followed(Motion* m) noexcept nogil:
+    """Whether all joints are where the Cartesian command is, and slow enough to stand in the next period."""
+    cdef int n
+    if m.chasing:
+        return 0
+    if not m.kins.linear:
+        for n in range(m.kins.joints):
+            if fabs(m.joint[n].vel_cmd) > m.joint[n].acc_limit * m.dt:
+                return 0
+    return 1
+
+
 cdef int resting(Motion* m) noexcept nogil:
     """Whether nothing moves or is about to."""
     cdef int n
     if m.mode == MotionState_COORD:
-        return m.tp_status.done and m.probing == PROBE_OFF
+        return m.tp_status.done and m.probing == PROBE_OFF and joints_have_followed(m)
     if m.mode == MotionState_TELEOP:
         for n in range(MAX_AXES):
             if m.axis[n].teleop.active:
                 return 0
-        return 1
+        return joints_have_followed(m)
     if m.tracking:
         return 1
     for n in range(m.num_joints):
@@ -98,6 +110,7 @@ cdef void enter_free(Motion* m) noexcept nogil:
         free_planner_rest_at(&joint.free, joint.pos_cmd)
         joint.free.acc_limit = joint.acc_limit
         joint.jog_vel = 0.0
+    m.chasing = 0
     m.mode = MotionState_FREE
 
 
@@ -172,6 +185,7 @@ cdef void fall_to_free(Motion* m) noexcept nogil:
         joint.free.acc_limit = joint.acc_limit
         joint.free.vel = joint.vel_cmd
         joint.free.active = 1
+    m.chasing = 0
     m.mode = MotionState_FREE
     m.mode_wanted = MotionState_FREE
     stop_all(m)

@@ -215,6 +215,7 @@ ctypedef struct Motion:
     int stopping             # an abort is slowing the machine down
     int at_rest
     int tracking             # disabled and at rest: the joint commands follow the feedback
+    int chasing              # a joint of other than linear kinematics is behind its Cartesian command
     int coord_error
     # pins that tell of it
     int32_t motion_enabled_out

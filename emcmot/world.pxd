@@ -1,11 +1,10 @@
 """Between axes and joints: kinematics, soft limits in Cartesian space, and the planner's axis limits."""
 
-from emcmot._messages cimport EmcPose
 from emcmot.state cimport Motion
 
-cdef inline double* coordinates(EmcPose* pose) noexcept nogil:
-    """The pose as nine numbers: x y z a b c u v w."""
-    return <double*>pose
+cdef enum Chase:         # Motion.chasing
+    CHASE_BEHIND = 1     # a joint is a little behind its Cartesian command
+    CHASE_LOST = 2       # by more than MIN_FERROR
 
 cdef int forward(Motion* m, double* joints, double* pose) noexcept nogil
 cdef int inverse(Motion* m, double* joints, double* pose) noexcept nogil

@@ -4,6 +4,7 @@ from libc.math cimport fabs, isfinite, sqrt
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MAX_JOINTS
+from emcmot.free_planner cimport fastest_stoppable
 from emcmot.joint cimport command_joint
 from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY
 from emcmot.report cimport TEXT_SIZE, report
@@ -13,6 +14,7 @@ from emcmot.tp.tp cimport tp_set_axis_limits
 cdef const char* AXIS_NAMES = b"XYZABCUVW"
 cdef double LIMIT_TOLERANCE = 1e-9   # lu or deg, relative to 1 + |limit|: rounding of unit conversions
 cdef double ALIGN_SHARE = 0.1        # share of a joint's velocity for closing a gap between joints and kinematics
+cdef double ROUNDING = 1.0 + 1e-9    # a joint may be this much over a limit that its command meets exactly
 cdef double ALIGNED = 1e-8           # lu or deg: a smaller gap is none
 
 
@@ -119,12 +121,34 @@ cdef int align_joints(Motion* m) noexcept nogil:
     return -1 if moving else 0
 
 
+cdef double follow_limited(Joint* joint, double wanted, double dt) noexcept nogil:
+    """Go to ``wanted`` in this period, or as near as the joint's limits allow; how far it stays behind.
+
+    A joint that is behind keeps the command's velocity and closes the gap with half of its acceleration.
+    """
+    cdef double wanted_vel = (wanted - joint.coarse_pos) / dt
+    cdef double gap = joint.coarse_pos - joint.pos_cmd
+    cdef double step = joint.acc_limit * dt * ROUNDING
+    cdef double limit = joint.vel_limit * ROUNDING
+    cdef double vel = fastest_stoppable(fabs(gap), 0.5 * joint.acc_limit, dt)
+    vel = wanted_vel + (vel if gap > 0.0 else -vel)
+    vel = min(max(vel, joint.vel_cmd - step), joint.vel_cmd + step)
+    vel = min(max(vel, -limit), limit)
+    if fabs(joint.pos_cmd + vel * dt - wanted) <= LIMIT_TOLERANCE:
+        command_joint(joint, wanted, dt)
+        return 0.0
+    command_joint(joint, joint.pos_cmd + vel * dt, dt)
+    return fabs(wanted - joint.pos_cmd)
+
+
 cdef int command_world(Motion* m, double* pose) noexcept nogil:
     """Make ``pose`` the command of this period, for all joints; -1, and nothing done, where it cannot be reached."""
     cdef double joints[MAX_JOINTS]
     cdef double way = 0.0
     cdef Joint* joint
     cdef int n
+    cdef double lag
+    cdef int chasing = 0
     for n in range(m.num_joints):
         joints[n] = m.joint[n].pos_cmd
     if not all_finite(pose, MAX_AXES) or inverse(m, joints, pose) != 0:
@@ -136,8 +160,16 @@ cdef int command_world(Motion* m, double* pose) noexcept nogil:
         m.pos_cmd[n] = pose[n]
     for n in range(m.kins.joints):
         joint = &m.joint[n]
+        if m.kins.linear:
+            command_joint(joint, joints[n], m.dt)
+        else:
+            lag = follow_limited(joint, joints[n], m.dt)
+            if lag > joint.min_ferror:
+                chasing = CHASE_LOST
+            elif lag > 0.0 and not chasing:
+                chasing = CHASE_BEHIND
         joint.coarse_pos = joints[n]
-        command_joint(joint, joint.coarse_pos, m.dt)
+    m.chasing = chasing
     m.pos_cmd_ok = 1
     return 0
 

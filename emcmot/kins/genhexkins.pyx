@@ -43,6 +43,7 @@ DEFAULTS = (
 )
 cdef double DEGREE = M_PI / 180.0
 cdef double SMALL_PIVOT = 1e-12
+cdef double UPRIGHT_SHARE = 0.8   # height of the upright pose over the mean length of the struts
 
 
 cdef void rotation(const double* pose, double* r) noexcept nogil:
@@ -140,7 +141,8 @@ cdef double row_of(const Kinematics* kins, const double* pose, const double* r, 
     return size
 
 
-cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
+cdef int newton(const Kinematics* kins, const double* joints, double* pose) noexcept nogil:
+    """Improve ``pose`` until the struts fit; -1 where that does not come to an end."""
     cdef double r[9]
     cdef double axes[9]
     cdef double jacobian[36]
@@ -161,6 +163,19 @@ cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept 
         for n in range(STRUTS):
             pose[n] += step[n]
     return -1
+
+
+cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
+    """From the last known pose; where none is near (at the first homing), from an upright one above the base."""
+    cdef double mean = 0.0
+    cdef int n
+    if newton(kins, joints, pose) == 0:
+        return 0
+    for n in range(STRUTS):
+        mean += joints[n] / STRUTS
+        pose[n] = 0.0
+    pose[2] = UPRIGHT_SHARE * mean
+    return newton(kins, joints, pose)
 
 
 def create() -> KinematicsModule:
