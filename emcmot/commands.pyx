@@ -1,8 +1,9 @@
 """The command handler: one table from command to what it requires and what it does.
 
-``run`` checks a record in this order: is it whole, is the command known, are its numbers finite and within reason, do the
-indices exist, is motion in the right state; only then the handler runs. Whatever is refused leaves the state as it was, with a
-text for the operator. ``COMMANDS`` is the same table for the documentation (docs/motion.md) and the tests.
+``run`` checks a record in this order: is it whole, is the command known, are its numbers finite and within reason,
+do the indices exist, is motion in the right state; only then the handler runs. Whatever is refused leaves the state
+as it was, with a text for the operator. ``COMMANDS`` is the same table for the documentation (docs/motion.md) and
+the tests.
 """
 
 from libc.math cimport fabs
@@ -315,7 +316,10 @@ def _find_numbers():
 
 _find_numbers()
 command(MotCommand_ABORT, 0, abort, "Stop all motion under its limits; drop queued moves, jogs and homing.")
-command(MotCommand_ENABLE, 0, enable, "Switch the drives of all active joints on. Refused while motion.enable is false.")
+command(
+    MotCommand_ENABLE, 0, enable,
+    "Switch the drives of all active joints on. Refused while motion.enable is false.",
+)
 command(MotCommand_DISABLE, 0, disable, "Switch the drives off; commands ramp to rest; spindles stop.")
 command(MotCommand_PAUSE, 0, pause, "Come to rest on the path; no effect outside of coordinated mode.")
 command(MotCommand_REVERSE, 0, reverse, "Run the path backwards from now on; only while paused.")
@@ -323,7 +327,10 @@ command(MotCommand_FORWARD, 0, forward, "Run the path forwards again; only while
 command(MotCommand_RESUME, 0, resume, "Go on after PAUSE or STEP.")
 command(MotCommand_STEP, 0, step, "Go on until the next move begins, then pause.")
 command(MotCommand_FREE, 0, free_mode, "Joint mode: each joint for itself. Refused while the machine is moving.")
-command(MotCommand_COORD, 0, coord_mode, "Coordinated mode. Refused while moving, and for other than identity kinematics until all is homed.")
+command(
+    MotCommand_COORD, 0, coord_mode,
+    "Coordinated mode. Refused while moving, and for other than identity kinematics until all is homed.",
+)
 command(MotCommand_TELEOP, 0, teleop_mode, "Teleop mode, jogs of axes. Refused as COORD is.")
 command(MotCommand_SPINDLE_SCALE, SPINDLE, spindle_scale, "Spindle override: factor `scale`.")
 command(MotCommand_SS_ENABLE, 0, enable_override, "Spindle override acts (`mode` 1) or not.")
@@ -332,13 +339,19 @@ command(MotCommand_RAPID_SCALE, 0, rapid_scale, "Rapid override: factor `scale`,
 command(MotCommand_FS_ENABLE, 0, enable_override, "Feed override acts on the moves to come (`mode` 1) or not.")
 command(MotCommand_FH_ENABLE, 0, enable_override, "Feed hold acts on the moves to come (`mode` 1) or not.")
 command(MotCommand_AF_ENABLE, 0, enable_override, "Adaptive feed acts on the moves to come (`mode` 1) or not.")
-command(MotCommand_OVERRIDE_LIMITS, 0, override_limits, "Ignore the closed limit switches until the next jog has ended; `joint` < 0: no more.")
+command(
+    MotCommand_OVERRIDE_LIMITS, 0, override_limits,
+    "Ignore the closed limit switches until the next jog has ended; `joint` < 0: no more.",
+)
 command(MotCommand_SET_LINE, ENABLED | COORD | MOVE, set_line, "Queue a straight move.")
 command(MotCommand_SET_CIRCLE, ENABLED | COORD | MOVE, set_circle, "Queue an arc or helix.")
 command(MotCommand_SET_TELEOP_VECTOR, ENABLED, teleop_vector, "Jog all axes with the velocity vector `pos`.")
 command(MotCommand_CLEAR_PROBE_FLAGS, 0, clear_probe_flags, "Forget the last probe result.")
 command(MotCommand_PROBE, ENABLED | COORD | MOVE, probe, "Queue a straight probing move (G38.n).")
-command(MotCommand_RIGID_TAP, ENABLED | COORD | MOVE, rigid_tap, "Queue a rigid tap with the spindle that the feed follows; `scale`: faster way out.")
+command(
+    MotCommand_RIGID_TAP, ENABLED | COORD | MOVE, rigid_tap,
+    "Queue a rigid tap with the spindle that the feed follows; `scale`: faster way out.",
+)
 command(MotCommand_SET_VEL, 0, set_parameters, "Speed of the moves that name none.")
 command(MotCommand_SET_VEL_LIMIT, 0, set_parameters, "Cap on the speed of the tool tip, 0: none.")
 command(MotCommand_SET_ACC, 0, set_parameters, "Acceleration of the moves that name none.")
@@ -349,7 +362,10 @@ command(MotCommand_SET_WORLD_HOME, 0, set_parameters, "Pose of the machine at ho
 command(MotCommand_SET_DEBUG, 0, nothing, "Taken for compatibility; motion writes no debug output.")
 command(MotCommand_SET_DOUT, DIGITAL_OUT, set_dout, "Digital output, at once or with the next move.")
 command(MotCommand_SET_AOUT, ANALOG_OUT, set_aout, "Analog output, at once or with the next move.")
-command(MotCommand_SET_SPINDLESYNC, SPINDLE, set_spindle_sync, "Moves to come follow the spindle, `spindlesync` lu per turn; 0: no more.")
+command(
+    MotCommand_SET_SPINDLESYNC, SPINDLE, set_spindle_sync,
+    "Moves to come follow the spindle, `spindlesync` lu per turn; 0: no more.",
+)
 command(MotCommand_SPINDLE_ON, SPINDLE, spindle_on, "Turn the spindle at `vel` rpm (signed).")
 command(MotCommand_SPINDLE_OFF, SPINDLE, spindle_off, "Stop the spindle.")
 command(MotCommand_SPINDLE_INCREASE, SPINDLE, spindle_increase, "100 rpm faster.")
@@ -360,7 +376,10 @@ command(MotCommand_SPINDLE_ORIENT, SPINDLE, spindle_orient, "Turn the spindle to
 command(MotCommand_SET_OFFSET, 0, set_parameters, "Tool offset, for the pins motion.tooloffset.*.")
 command(MotCommand_SET_MAX_FEED_OVERRIDE, 0, set_parameters, "Largest feed override.")
 command(MotCommand_SETUP_ARC_BLENDS, 0, nothing, "Taken for compatibility; the planner needs none of it.")
-command(MotCommand_SET_PROBE_ERR_INHIBIT, 0, set_probe_err_inhibit, "No alarm for a probe that trips in a jog (flag 1) or homing (flag 2).")
+command(
+    MotCommand_SET_PROBE_ERR_INHIBIT, 0, set_probe_err_inhibit,
+    "No alarm for a probe that trips in a jog (flag 1) or homing (flag 2).",
+)
 command(MotCommand_ENABLE_WATCHDOG, 0, nothing, "For a hardware watchdog, where one is present; none is.")
 command(MotCommand_DISABLE_WATCHDOG, 0, nothing, "For a hardware watchdog, where one is present; none is.")
 command(MotCommand_JOG_CONT, ENABLED | JOINT_OR_AXIS, jog, "Jog with `vel` until stopped or at a limit.")
@@ -372,7 +391,10 @@ command(MotCommand_JOINT_DEACTIVATE, JOINT, deactivate_joint, "The joint takes p
 command(MotCommand_JOINT_ENABLE_AMPLIFIER, JOINT, enable_amplifier, "Set the joint's amp-enable-out, nothing else.")
 command(MotCommand_JOINT_DISABLE_AMPLIFIER, JOINT, disable_amplifier, "Clear the joint's amp-enable-out, nothing else.")
 command(MotCommand_JOINT_HOME, ENABLED | FREE | JOINT_OR_ALL, home, "Home a joint, or all in sequence (-1).")
-command(MotCommand_JOINT_UNHOME, JOINT_OR_ALL, unhome, "Forget the home of a joint, of all (-1), of the volatile ones (-2).")
+command(
+    MotCommand_JOINT_UNHOME, JOINT_OR_ALL, unhome,
+    "Forget the home of a joint, of all (-1), of the volatile ones (-2).",
+)
 command(MotCommand_SET_JOINT_POSITION_LIMITS, JOINT, set_parameters, "Soft limits.")
 command(MotCommand_SET_JOINT_BACKLASH, JOINT, set_parameters, "Backlash.")
 command(MotCommand_SET_JOINT_MIN_FERROR, JOINT, set_parameters, "Largest following error at rest.")
@@ -388,6 +410,9 @@ command(MotCommand_SET_AXIS_VEL_LIMIT, AXIS, set_parameters, "Largest velocity, 
 command(MotCommand_SET_AXIS_ACC_LIMIT, AXIS, set_parameters, "Largest acceleration, and that of its external offset.")
 command(MotCommand_SET_AXIS_LOCKING_JOINT, AXIS, set_parameters, "The joint that must be unlocked for this axis.")
 command(MotCommand_SET_SPINDLE_PARAMS, SPINDLE, set_parameters, "Speed limits in both directions.")
-command(MotCommand_SET_HEARTBEAT_TIMEOUT, 0, set_parameters, "Host seconds without a command after which motion stops; 0: never.")
+command(
+    MotCommand_SET_HEARTBEAT_TIMEOUT, 0, set_parameters,
+    "Host seconds without a command after which motion stops; 0: never.",
+)
 command(MotCommand_HEARTBEAT, 0, nothing, "Task is alive.")
 command(MotCommand_SET_UNITS, 0, set_parameters, "Millimetres per lu, for the feed pins.")

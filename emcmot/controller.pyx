@@ -1,7 +1,7 @@
 """One servo period of motion: inputs, supervision, modes, planners, joints, outputs, in this order.
 
-The command handler has run just before (``commands.run``). Pins are already copied into the state, and are copied out of it
-afterwards by motmod or by the stepped simulator.
+The command handler has run just before (``commands.run``). Pins are already copied into the state, and are copied
+out of it afterwards by motmod or by the stepped simulator.
 """
 
 from libc.math cimport sqrt
@@ -197,7 +197,10 @@ cdef void move_coord(Motion* m) noexcept nogil:
     elif m.chasing == CHASE_LOST and not m.stopping:
         stop_all(m)
         m.coord_error = 1
-        snprintf(report(m), TEXT_SIZE, b"A joint can't follow the path within its velocity and acceleration limits: motion stopped")
+        snprintf(
+            report(m), TEXT_SIZE,
+            b"A joint can't follow the path within its velocity and acceleration limits: motion stopped",
+        )
 
 
 cdef void move(Motion* m) noexcept nogil:

@@ -1,8 +1,9 @@
-"""External offsets: a shift of each axis by HAL (torch height control, adaptive compensation), on top of the planners.
+"""External offsets: a shift of each axis by HAL (torch height control, adaptive compensation), on top of the
+planners.
 
-Each axis follows counts * scale with a planner of its own, whose limits are the share of the axis limits that the INI's
-OFFSET_AV_RATIO leaves to it; task has lowered the planner's limits by the same share. Offsets act in teleop and coordinated
-mode of a homed machine, and come to rest before the mode changes or the machine is off.
+Each axis follows counts * scale with a planner of its own, whose limits are the share of the axis limits that the
+INI's OFFSET_AV_RATIO leaves to it; task has lowered the planner's limits by the same share. Offsets act in teleop
+and coordinated mode of a homed machine, and come to rest before the mode changes or the machine is off.
 """
 
 from libc.math cimport fabs

@@ -135,14 +135,16 @@ cdef int step(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 
 cdef int reverse(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
+    if not m.tp_status.paused:
+        return refuse(m, b"can't run in reverse: pause the program first")
     if tp_set_reverse(m.tp, 1) != TP_OK:
-        return refuse(m, b"can't run in reverse now: pause the program first")
+        return refuse(m, b"can't run in reverse: the planner does not go back from here")
     return MotCommandStatus_OK
 
 
 cdef int forward(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    if tp_set_reverse(m.tp, 0) != TP_OK:
-        return refuse(m, b"can't run forward now: pause the program first")
+    if m.tp_status.reversing and tp_set_reverse(m.tp, 0) != TP_OK:
+        return refuse(m, b"can't run forward: pause the program first")
     return MotCommandStatus_OK
 
 
@@ -303,7 +305,8 @@ cdef int disable_amplifier(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 cdef int set_num_joints(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.enabled or not m.kins.joints <= c.joint <= m.max_joints:
         snprintf(
-            report(m), TEXT_SIZE, b"can't set the number of joints to %d: motmod has %d, the kinematics need %d, and motion must be off",
+            report(m), TEXT_SIZE,
+            b"can't set the number of joints to %d: motmod has %d, the kinematics need %d, and motion must be off",
             c.joint, m.max_joints, m.kins.joints,
         )
         return MotCommandStatus_INVALID_PARAMS
@@ -313,7 +316,9 @@ cdef int set_num_joints(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 cdef int set_num_spindles(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if not 0 <= c.spindle <= m.max_spindles:
-        snprintf(report(m), TEXT_SIZE, b"can't set the number of spindles to %d: motmod has %d", c.spindle, m.max_spindles)
+        snprintf(
+            report(m), TEXT_SIZE, b"can't set the number of spindles to %d: motmod has %d", c.spindle, m.max_spindles
+        )
         return MotCommandStatus_INVALID_PARAMS
     m.num_spindles = c.spindle
     return MotCommandStatus_OK

@@ -1,8 +1,8 @@
 """Homing: a table of states for one joint, and the machine's sequence over all joints.
 
-A state is a function that looks at the joint once a period and may set the next state; it returns 1 where the next state is
-to run at once. The joint's free planner makes the moves, so the joint's limits hold whatever happens here. A failure is
-reported with joint, state and reason, and ends the sequence of the machine.
+A state is a function that looks at the joint once a period and may set the next state; it returns 1 where the next
+state is to run at once. The joint's free planner makes the moves, so the joint's limits hold whatever happens here.
+A failure is reported with joint, state and reason, and ends the sequence of the machine.
 """
 
 from libc.math cimport fabs

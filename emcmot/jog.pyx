@@ -1,7 +1,8 @@
 """Jogs of joints (free mode) and axes (teleop mode), by command and by wheel.
 
 A jog sets target and speed of a free planner; the planner does the rest. Targets are kept within the soft limits, so
-that every jog slows down in time. The command handler has checked mode and enable before it calls ``jog_joint`` or ``jog_axis``.
+that every jog slows down in time. The command handler has checked mode and enable before it calls ``jog_joint`` or
+``jog_axis``.
 """
 
 from libc.math cimport fabs

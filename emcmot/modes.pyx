@@ -1,7 +1,8 @@
 """Enabling, disabling, and the changes between free, teleop and coordinated mode.
 
-Commands only say what is wanted; ``set_mode`` carries it out at the first period in which the machine stands still. So no
-change of mode ever makes a joint's command jump or break its limits: what moves is first brought to rest by whoever moves it.
+Commands only say what is wanted; ``set_mode`` carries it out at the first period in which the machine stands still.
+So no change of mode ever makes a joint's command jump or break its limits: what moves is first brought to rest by
+whoever moves it.
 """
 
 from libc.math cimport fabs, isfinite

@@ -1,7 +1,8 @@
 """The realtime module ``motmod``: motion with its HAL pins, its two functions, its threads and its NML buffers.
 
-``motion-command-handler`` takes the commands that task has queued, ``motion-controller`` runs one period and publishes the
-status. Both are native and never wait: commands, status and error texts go through the lock-free side of the NML buffers.
+``motion-command-handler`` takes the commands that task has queued, ``motion-controller`` runs one period and
+publishes the status. Both are native and never wait: commands, status and error texts go through the lock-free side
+of the NML buffers.
 """
 
 from libc.stdint cimport int32_t, int64_t, uintptr_t

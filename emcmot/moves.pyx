@@ -1,7 +1,7 @@
 """Commands that queue something in the planner: lines, arcs, probing moves, and outputs that wait for them.
 
-The command table has checked that motion is enabled and coordinated and that the numbers are finite. End points are checked
-here against the limits of axes and joints before anything is queued.
+The command table has checked that motion is enabled and coordinated and that the numbers are finite. End points are
+checked here against the limits of axes and joints before anything is queued.
 """
 
 from libc.stdio cimport snprintf

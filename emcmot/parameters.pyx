@@ -1,7 +1,7 @@
 """The SET_xxx family of commands: each row says which field of the command becomes which member of the state.
 
-A command may have several rows; all of its values are checked before the first is taken. ``PARAMETERS`` lists them for the
-documentation.
+A command may have several rows; all of its values are checked before the first is taken. ``PARAMETERS`` lists them
+for the documentation.
 """
 
 from libc.math cimport isfinite
@@ -75,7 +75,13 @@ cdef Axis A
 cdef Spindle S
 cdef Motion M
 
-cdef const char** RULE_TEXTS = ["a number", "a number that is not negative", "a number above 0", "not below the lower limit", "an integer"]
+cdef const char** RULE_TEXTS = [
+    "a number",
+    "a number that is not negative",
+    "a number above 0",
+    "not below the lower limit",
+    "an integer",
+]
 OWNERS = ("joint", "axis", "spindle", "machine")
 PARAMETERS: list[tuple[str, str, str, str]] = []   # command, of what, field of the command, what it takes
 
@@ -114,7 +120,8 @@ cdef int set_parameters(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
             value = (<double*>(source + ROWS[i].source))[0]
             if not acceptable(ROWS[i].rule, value, previous):
                 snprintf(
-                    report(m), TEXT_SIZE, b"Motion command %d refused: %g is not %s", c.command, value, RULE_TEXTS[ROWS[i].rule]
+                    report(m), TEXT_SIZE, b"Motion command %d refused: %g is not %s",
+                    c.command, value, RULE_TEXTS[ROWS[i].rule],
                 )
                 return MotCommandStatus_INVALID_PARAMS
             previous = value

@@ -1,7 +1,7 @@
 """The HAL pins of motion: every name with its type, direction and the member of the state that it shows.
 
-motmod makes HAL pins of them, the stepped simulator reads and writes them by name, docs/motion.md lists them. Names, types
-and directions are LinuxCNC 2.9's (motion(9)).
+motmod makes HAL pins of them, the stepped simulator reads and writes them by name, docs/motion.md lists them. Names,
+types and directions are LinuxCNC 2.9's (motion(9)).
 """
 
 from libc.stdint cimport uintptr_t

@@ -1,8 +1,8 @@
 """Motion without HAL, NML or a clock: stepped from Python, for tests and tools, as fast as it can.
 
-``Motion`` takes EMCMOT_COMMAND messages, steps servo periods, gives EMCMOT_STATUS messages, and reads and writes every HAL
-pin of motmod by name. With ``loopback`` the motors follow their commands at once. Simulated home, limit and index switches
-make a machine of it that can be homed.
+``Motion`` takes EMCMOT_COMMAND messages, steps servo periods, gives EMCMOT_STATUS messages, and reads and writes
+every HAL pin of motmod by name. With ``loopback`` the motors follow their commands at once. Simulated home, limit
+and index switches make a machine of it that can be homed.
 """
 
 from libc.math cimport fabs, floor

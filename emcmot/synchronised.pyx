@@ -1,4 +1,6 @@
-"""What the planner waits for, or is led by: spindles at speed, spindle positions, index pulses, and the locks of indexers."""
+"""What the planner waits for, or is led by: spindles at speed, spindle positions, index pulses, and the locks of
+indexers.
+"""
 
 from emcmot.spindle cimport spindles_at_speed
 from emcmot.state cimport Motion, Spindle

@@ -178,7 +178,9 @@ cdef double slack(double limit) noexcept nogil:
     return LIMIT_TOLERANCE * (1.0 + fabs(limit))
 
 
-cdef int refuse(Motion* m, const char* what, long move_id, const char* place, const char* side, double value, double limit) noexcept nogil:
+cdef int refuse(
+    Motion* m, const char* what, long move_id, const char* place, const char* side, double value, double limit
+) noexcept nogil:
     snprintf(
         report(m, -1, move_id), TEXT_SIZE, b"%s move on line %ld would exceed %s's %s limit: %.4f, limit %.4f",
         what, move_id, place, side, value, limit,
@@ -205,7 +207,9 @@ cdef int check_end_point(Motion* m, const char* what, long move_id, double* pose
     for n in range(m.num_joints):
         joints[n] = m.joint[n].pos_cmd
     if inverse(m, joints, pose) != 0:
-        snprintf(report(m, -1, move_id), TEXT_SIZE, b"%s move on line %ld ends where the machine cannot reach", what, move_id)
+        snprintf(
+            report(m, -1, move_id), TEXT_SIZE, b"%s move on line %ld ends where the machine cannot reach", what, move_id
+        )
         return -1
     for n in range(m.kins.joints):
         joint = &m.joint[n]

@@ -1,4 +1,6 @@
-"""CoreXY: two belts move x and y together. x = (joint 0 + joint 1) / 2, y = (joint 0 - joint 1) / 2; z a b c u v w follow."""
+"""CoreXY: two belts move x and y together. x = (joint 0 + joint 1) / 2, y = (joint 0 - joint 1) / 2; z a b c u v w
+follow.
+"""
 
 from emcmot.kins.kinematics cimport KINEMATICS_BOTH, Kinematics, KinematicsModule
 

@@ -1,9 +1,9 @@
 """A hexapod: six struts between base and platform are the joints; x y z a b c are the platform's place and attitude.
 
-The platform turns about x by a, then about y by b, then about z by c (degrees). The struts of a pose are distances; the pose
-of given struts is found by Newton's method from the last known pose, which takes two or three steps from a period before.
-Geometry, as pins: base.N.x .. and platform.N.x .. (ends of strut N), spindle-offset, tool-offset, convergence-criterion,
-limit-iterations, max-error.
+The platform turns about x by a, then about y by b, then about z by c (degrees). The struts of a pose are distances;
+the pose of given struts is found by Newton's method from the last known pose, which takes two or three steps from a
+period before. Geometry, as pins: base.N.x .. and platform.N.x .. (ends of strut N), spindle-offset, tool-offset,
+convergence-criterion, limit-iterations, max-error.
 """
 
 from libc.math cimport M_PI, cos, fabs, sin, sqrt
@@ -56,7 +56,9 @@ cdef void rotation(const double* pose, double* r) noexcept nogil:
     r[6], r[7], r[8] = -sb, cb * sa, cb * ca
 
 
-cdef void strut(const Kinematics* kins, const double* pose, const double* r, int n, double* arm, double* vector) noexcept nogil:
+cdef void strut(
+    const Kinematics* kins, const double* pose, const double* r, int n, double* arm, double* vector
+) noexcept nogil:
     """``arm``: from the tool's tip to the strut's end on the platform; ``vector``: from the base to there."""
     cdef const double* base = &kins.parameter[3 * n]
     cdef const double* top = &kins.parameter[PLATFORM + 3 * n]
@@ -123,12 +125,14 @@ cdef void axes_of_attitude(const double* pose, double* axes) noexcept nogil:
     axes[6], axes[7], axes[8] = 0.0, 0.0, 1.0
 
 
-cdef double row_of(const Kinematics* kins, const double* pose, const double* r, const double* axes, int n, double* row) noexcept nogil:
+cdef double row_of(
+    const Kinematics* kins, const double* pose, const double* r, const double* axes, int n, double* row
+) noexcept nogil:
     """The length of strut n; ``row``: how it changes with x y z a b c."""
     cdef double arm[3]
     cdef double vector[3]
     cdef double moment[3]
-    cdef double size
+    cdef double size, turned
     cdef int i
     strut(kins, pose, r, n, arm, vector)
     size = length(vector)
@@ -137,7 +141,8 @@ cdef double row_of(const Kinematics* kins, const double* pose, const double* r, 
     moment[2] = arm[0] * vector[1] - arm[1] * vector[0]
     for i in range(3):
         row[i] = vector[i] / size
-        row[3 + i] = (axes[3 * i] * moment[0] + axes[3 * i + 1] * moment[1] + axes[3 * i + 2] * moment[2]) / size * DEGREE
+        turned = axes[3 * i] * moment[0] + axes[3 * i + 1] * moment[1] + axes[3 * i + 2] * moment[2]
+        row[3 + i] = turned / size * DEGREE
     return size
 
 

@@ -1,8 +1,9 @@
-"""A SCARA robot: two arms that turn in the plane (joints 0, 1), a vertical slide (2) and a wrist (3); a and b follow (4, 5).
+"""A SCARA robot: two arms that turn in the plane (joints 0, 1), a vertical slide (2) and a wrist (3); a and b follow
+(4, 5).
 
-Lengths (pins D1 .. D6): D1 height of the inner arm, D2 its length, D3 height of the outer arm above the inner one, D4 its
-length, D5 height of the outer arm above the tool's tip when joint 2 is 0, D6 distance of the tip from the wrist's axis.
-The elbow stays on the side where it is: the sign of joint 1.
+Lengths (pins D1 .. D6): D1 height of the inner arm, D2 its length, D3 height of the outer arm above the inner one,
+D4 its length, D5 height of the outer arm above the tool's tip when joint 2 is 0, D6 distance of the tip from the
+wrist's axis. The elbow stays on the side where it is: the sign of joint 1.
 """
 
 from libc.math cimport M_PI, acos, atan2, cos, sin

@@ -23,6 +23,7 @@ EXPECTED = {
     "DISABLE": ({}, STATES),
     "PAUSE": ({}, STATES),
     "REVERSE": ({}, ()),
+    "FORWARD": ({}, STATES),
     "RESUME": ({}, STATES),
     "STEP": ({}, STATES),
     "FREE": ({}, STATES),
@@ -97,8 +98,8 @@ EXPECTED = {
     "HEARTBEAT": ({}, STATES),
     "SET_UNITS": ({"scale": 1.0}, STATES),
 }
-# what depends on more than the mode has its own tests: test_moves.py (reverse, taps)
-ELSEWHERE = {"REVERSE", "FORWARD", "RIGID_TAP"}
+# what depends on more than the mode has its own tests: test_spindle_sync.py
+ELSEWHERE = {"RIGID_TAP"}
 
 
 def test_the_expectations_cover_every_command() -> None:

@@ -56,7 +56,7 @@ def test_a_thread_begins_at_the_index_and_follows_the_spindle() -> None:
     for _ in range(6000):
         spindle.step()
         z, revs = m["joint.2.pos-cmd"], m["spindle.0.revs"]
-        if -20 < z < -3:
+        if -28 < z < -3:
             lags.append((z / 1.5 + revs) * 360.0)
         if m["motion.in-position"]:
             break
