@@ -44,6 +44,7 @@ def peer(tmp_path: Path, text: str) -> str:
     command = f"cd {tmp_path} && timeout 60 {PEER} -k -f {path}"
     shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    environment["PATH"] = "/usr/bin:/bin"  # its own halcmd, not ours
     done = subprocess.run(
         [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "sh", "-c", command],
         capture_output=True, text=True, timeout=90, check=False, env={**environment, "HOME": str(tmp_path)},

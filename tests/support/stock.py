@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -58,7 +57,7 @@ class StockClient:
 
     def environment(self) -> dict[str, str]:
         """For programs that must not meet the project's own modules."""
-        return {"HOME": str(self.home), "PATH": os.environ["PATH"], "LANG": "C.UTF-8"}
+        return {"HOME": str(self.home), "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"}
 
     def start(self, script: str) -> subprocess.Popen[str]:
         """The script as a process; it prints ``out`` as its last line."""

@@ -91,9 +91,11 @@ net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 """
 ENTER = """\
+mkdir "$1/source" && mount --bind "$4" "$1/source" || exit 77
 ip link set lo up && mount -t tmpfs tmpfs /tmp || exit 77
+mkdir -p "$4" && mount --bind "$1/source" "$4" || exit 77  # the checkout may lie below /tmp
 cd "$1"
-export HOME="$1" USER={user}
+export HOME="$1" USER={user} PATH=/usr/bin:/bin:/usr/sbin:/sbin
 su {user} -s /bin/sh -c 'exec linuxcnc machine.ini' > machine.log 2>&1 &
 "$2" "$3" > client.log 2>&1
 status=$?
@@ -139,6 +141,7 @@ def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]
         _prepare(folder, script, options)
         command = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
         command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
+        command += [str(SOURCE)]
         process = subprocess.run(command, timeout=seconds)
         logs = "".join((folder / name).read_text(errors="replace")[-3000:] for name in ("machine.log", "client.log"))
         assert process.returncode == 0, logs
