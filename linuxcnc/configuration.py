@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import shlex
-import shutil
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import nml
 from hal.session import find_hal_file
 from linuxcnc.options import Overrides
+from linuxcnc.programs import MODULES, Programs, python_module
 from nml import clock, namespace
 from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
 from nml.inifile import IniFile
 
-# Programs of ours by the names that INI files use
-MODULES = {
-    "milltask": "emctask",
-    "linuxcnctask": "emctask",
-    "io": "emcio",
-    "iov2": "emcio",
-    "halui": "gui.halui",
-    "linuxcncrsh": "gui.linuxcncrsh",
-    "linuxcncsvr": "nml.net.server",
-}
 # Modules that other builds may replace; ours are built into motion and go by LinuxCNC's names
 PLANNER = ("TRAJ", "TPMOD", "tpmod", "-t")
 HOMING = ("EMCMOT", "HOMEMOD", "homemod", "-m")
@@ -52,6 +40,7 @@ class Configuration:
         self.folder = self.path.parent
         self.overrides = overrides or Overrides()
         self.ini = IniFile(self.path)
+        self.programs = Programs(self.ini)
         self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
         self.ini.find("TRAJ", "COORDINATES")
         self._require_built_in(*PLANNER, self.overrides.planner)
@@ -59,16 +48,16 @@ class Configuration:
         self.nml_file = self._nml_file()
         self._hal_folders = self._existing(self.overrides.hal_folders)
         self.hal_files = self._hal_files()
-        self.task = self._command("TASK", "TASK", "milltask")
-        self.io = self._command("EMCIO", "EMCIO", "io")
+        self.task = self.programs.command("TASK", "TASK", "milltask")
+        self.io = self.programs.command("EMCIO", "EMCIO", "io")
         self.server = self._server()
-        self.halui = self._command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
+        self.halui = self.programs.command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
 
     def display(self) -> list[str]:
         """Command line of the display; only asked for when one is to be started."""
         if self.ini.find("DISPLAY", "DISPLAY") is None:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
-        return self._command("DISPLAY", "DISPLAY", "linuxcncrsh")
+        return self.programs.command("DISPLAY", "DISPLAY", "linuxcncrsh")
 
     def _require_built_in(self, section: str, key: str, ours: str, option: str, given: str | None) -> None:
         """Refuse a planner or homing module other than the one that motion has built in."""
@@ -95,32 +84,6 @@ class Configuration:
             return None
         optional = ["--optional"] if namespace.VARIABLE in os.environ else []
         return [*python_module(MODULES["linuxcncsvr"]), "-ini", str(self.path), *optional]
-
-    def _command(self, section: str, key: str, default: str) -> list[str]:
-        """The command line of the program that an entry names: one of ours, or an executable."""
-        words = shlex.split(self.ini.find(section, key, default))
-        module = MODULES.get(words[0]) if words else None
-        if module is not None and importlib.util.find_spec(module) is not None:
-            return [*python_module(module), "-ini", str(self.path), *words[1:]]
-        executable = words and self._executable(words[0])
-        if executable:
-            return [executable, "-ini", str(self.path), *words[1:]]
-        raise ConfigError(
-            f"[{section}]{key} = {' '.join(words)}: no such program; "
-            f"one of {', '.join(sorted(MODULES))} or an executable is allowed",
-            self.ini.place(section, key),
-        )
-
-    def _executable(self, name: str) -> str | None:
-        """Where a program is: a path relative to the INI file, or a name on the search path."""
-        if os.sep in name:
-            return shutil.which(str(self.folder / name))
-        return shutil.which(name, path=f"{self.folder}{os.pathsep}{self._search_path()}")
-
-    def _search_path(self) -> str:
-        """The machine's own programs, ours beside this Python, then everybody's."""
-        beside = str(Path(sys.executable).parent)
-        return os.pathsep.join([str(self.folder / "bin"), beside, os.environ.get("PATH", os.defpath)])
 
     def _nml_file(self) -> Path | None:
         name = self.ini.find("EMC", "NML_FILE")
@@ -160,14 +123,9 @@ class Configuration:
             "HALLIB_DIR": str(HALLIB),
             "HALLIB_PATH": os.pathsep.join([*map(str, self._hal_folders), ".", str(HALLIB)]),
             "LINUXCNC_NCFILES_DIR": str(NC_FILES),
-            "PATH": self._search_path(),
+            "PATH": self.programs.search_path(),
             "PYTHONPATH": os.pathsep.join(filter(None, [str(PACKAGES_FOLDER), variables.get("PYTHONPATH")])),
         }
         if self.nml_file is not None:
             variables["NMLFILE"] = str(self.nml_file)
         return variables
-
-
-def python_module(module: str) -> list[str]:
-    """Command line that runs one of our modules; ``-P`` keeps the working folder out of the import path."""
-    return [sys.executable, "-P", "-m", module]

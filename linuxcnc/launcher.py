@@ -64,6 +64,8 @@ def _launch(options: argparse.Namespace) -> int:
 
     try:
         ini = _ini_file(options)
+        if options.check:
+            return _check(ini)
         configuration = Configuration(ini, overrides(options))
         if options.run is not None:
             _readable(options.run)
@@ -91,6 +93,16 @@ def _ini_file(options: argparse.Namespace) -> Path:
     if options.ini is not None:
         return options.ini
     return lastused.recall_or_refuse() if options.last else picker.pick()
+
+
+def _check(ini: Path) -> int:
+    """Print what is wrong with a configuration."""
+    from linuxcnc.check import findings
+
+    found = findings(ini)
+    for finding in found:
+        print(finding)
+    return 1 if found else 0
 
 
 def _readable(path: Path) -> None:

@@ -56,6 +56,7 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
         default=[],
         help="look for HAL files here first; may be given again",
     )
+    parser.add_argument("--check", action="store_true", help="check the configuration and end; starts nothing")
     parser.add_argument("--run", type=Path, metavar="FILE", help="switch on, home, run this program and end")
     parser.add_argument("--speed", type=float, metavar="N", help="simulate N times faster than real time")
     parser.add_argument("--namespace", metavar="NAME", help="name of this machine where several run on one host")

@@ -132,3 +132,14 @@ def test_a_configuration_is_chosen_in_a_dumb_terminal(tmp_path):
     assert process.returncode == 1
     assert f"{folder}/mill_inch.ini:" in errors
     assert "nodisplay" in errors
+
+
+def test_a_check_starts_nothing_and_its_exit_code_tells(tmp_path):
+    ini = copy_mill(tmp_path)
+    fine = launcher(tmp_path, "--check", str(ini))
+    assert (fine.returncode, fine.stdout, fine.stderr) == (0, "", "")
+    ini.write_text(ini.read_text().replace("JOINTS = 3", "JOINTS = 2"))
+    found = launcher(tmp_path, "--check", str(ini))
+    assert found.returncode == 1
+    assert all(line.startswith(f"{ini}:") for line in found.stdout.splitlines())
+    assert traces() == []

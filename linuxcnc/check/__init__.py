@@ -1,0 +1,48 @@
+"""``linuxcnc --check``: everything that is wrong with a configuration, found without starting it.
+
+Each rule is a function from the configuration to findings, ``file:line: what is wrong; what would be right``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from linuxcnc.check import entries, files, machine
+from linuxcnc.check.base import Checked
+from nml.errors import ConfigError
+from nml.inifile import IniFile
+
+Rule = Callable[[Checked], Iterator[str]]
+
+RULES: tuple[Rule, ...] = (
+    files.lines,
+    entries.missing,
+    files.hal_files,
+    files.references,
+    entries.sections,
+    entries.unknown_keys,
+    entries.values,
+    files.programs,
+    files.modules,
+    files.nml_file,
+    files.tool_table,
+    machine.kinematics,
+    machine.joint_sections,
+    machine.axis_sections,
+    machine.limits,
+    machine.axes_within_joints,
+    machine.homing,
+    machine.home_sequence,
+    machine.periods,
+)
+"""``hal_files`` gathers what the rules after it look at."""
+
+
+def findings(path: Path) -> list[str]:
+    """All that is wrong, in the order of the rules, each once; a file that cannot be read is the only finding."""
+    try:
+        checked = Checked(IniFile(path))
+    except ConfigError as error:
+        return [str(error)]
+    return list(dict.fromkeys(finding for rule in RULES for finding in rule(checked)))
