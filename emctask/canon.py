@@ -49,25 +49,21 @@ class TaskCanon(WorldModel):
         super().__init__(config, motion, io)
         self.queue = InterpList()
         self.places = Places()
-        self.file = ""
         self.line_number = 0
-        self.level = 0
-        self.block = 0
-        self.origin: Block | None = None
+        self.block = Block("", 0)
+        self._block_before = self.block
+        self.tool_offset = self.coords.tool
+        """The tool offset as far as the program was read: X to W, machine units."""
         self.log_path: Path | None = None
 
     def begin_block(self, line: int, file: str, level: int) -> None:
         """What comes now belongs to this block."""
-        self.block += 1
+        self._block_before, self.block = self.block, Block(file, level, self.block)
         self.line_number = line
-        self.file = file
-        self.level = level
-        self.origin = None
 
-    def end_block(self, modes: Modes) -> None:
-        """The block is executed; these codes are in force for its moves."""
-        if self.origin is not None:
-            self.origin.modes = modes
+    def end_block(self, modes: Modes, offsets: tuple[float, ...]) -> None:
+        """The block is executed; these codes and stored offsets are in force after it."""
+        self.block.modes, self.block.offsets, self.block.tool_offset = modes, offsets, self.tool_offset
 
     def put(self, operation: Operation, payload: Any = None) -> None:
         """Queue an operation after everything that came before it."""
@@ -83,44 +79,55 @@ class TaskCanon(WorldModel):
         self.queue.clear()
         self.on_reset()
 
+    def forget_spindles(self) -> None:
+        """The spindles were stopped without the program: an S word must not start them again."""
+        for spindle in self.spindles:
+            spindle.direction = 0
+
     def on_reset(self) -> None:
         self.set_end(self.end_point)
 
     # --- Moves
 
-    def new_id(self, line: int) -> int:
-        """The motion id of a move of this line."""
-        if self.origin is None:
-            self.origin = Block(self.file, self.level)
-        return self.places.new_id(Place(line, self.origin))
+    def origin(self, line: int) -> Block:
+        """The block of a move of this line: a line that was held back to be joined comes from before this block."""
+        return self.block if line == self.line_number else self._block_before
 
     def line(self, line, kind, x, y, z, a, b, c, u, v, w, vel, ini_maxvel, acc):  # type: ignore[no-untyped-def]
+        block = self.origin(line)
+        number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
-            SET_LINE, 0, 0, 0, self.new_id(line), x, y, z, a, b, c, u, v, w, *NO_CIRCLE, self.indexer, kind,
+            SET_LINE, 0, 0, 0, number, x, y, z, a, b, c, u, v, w, *NO_CIRCLE, self.indexer, kind,
             vel, ini_maxvel, acc, 0.0, self.term_cond, 0, self.tolerance,
         )  # fmt: skip
-        self.queue.append((op.move, packed, line, self.block))
+        self.queue.append((op.move, packed, line, block))
 
     def arc(self, line, x, y, z, a, b, c, u, v, w, cx, cy, cz, nx, ny, nz, turn, vel, ini_maxvel, acc):  # type: ignore[no-untyped-def]
+        block = self.origin(line)
+        number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
-            SET_CIRCLE, 0, 0, 0, self.new_id(line), x, y, z, a, b, c, u, v, w, cx, cy, cz, nx, ny, nz, turn, ARC,
+            SET_CIRCLE, 0, 0, 0, number, x, y, z, a, b, c, u, v, w, cx, cy, cz, nx, ny, nz, turn, ARC,
             vel, ini_maxvel, acc, 0.0, self.term_cond, 0, self.tolerance,
         )  # fmt: skip
-        self.queue.append((op.move, packed, line, self.block))
+        self.queue.append((op.move, packed, line, block))
 
     def probe(self, line, x, y, z, a, b, c, u, v, w, vel, ini_maxvel, acc, probe_type):  # type: ignore[no-untyped-def]
+        block = self.origin(line)
+        number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
-            PROBE, 0, 0, 0, self.new_id(line), x, y, z, a, b, c, u, v, w, *NO_CIRCLE, -1, PROBING,
+            PROBE, 0, 0, 0, number, x, y, z, a, b, c, u, v, w, *NO_CIRCLE, -1, PROBING,
             vel, ini_maxvel, acc, 0.0, TANGENT, 0, 0.0,
         )  # fmt: skip
-        self.queue.append((op.probe, (packed, probe_type), line, self.block))
+        self.queue.append((op.probe, (packed, probe_type), line, block))
 
     def tap(self, line, x, y, z, a, b, c, u, v, w, vel, ini_maxvel, acc, scale):  # type: ignore[no-untyped-def]
+        block = self.origin(line)
+        number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
-            RIGID_TAP, 0, 0, self.feed_spindle, self.new_id(line), x, y, z, a, b, c, u, v, w, *NO_CIRCLE, -1, FEED_MOVE,
+            RIGID_TAP, 0, 0, self.feed_spindle, number, x, y, z, a, b, c, u, v, w, *NO_CIRCLE, -1, FEED_MOVE,
             vel, ini_maxvel, acc, 0.0, TANGENT, 0, 0.0,
         )  # fmt: skip
-        self.queue.append((op.rigid_tap, (packed, scale), line, self.block))
+        self.queue.append((op.rigid_tap, (packed, scale), line, block))
 
     def start_speed_feed_synch(self, spindle, feed_per_revolution, velocity_mode):  # type: ignore[no-untyped-def]
         MoveCanon.start_speed_feed_synch(self, spindle, feed_per_revolution, velocity_mode)
@@ -149,7 +156,8 @@ class TaskCanon(WorldModel):
 
     def use_tool_length_offset(self, x, y, z, a, b, c, u, v, w):  # type: ignore[no-untyped-def]
         MoveCanon.use_tool_length_offset(self, x, y, z, a, b, c, u, v, w)
-        self.put(op.tool_offset, self.coords.tool)
+        self.tool_offset = self.coords.tool
+        self.put(op.tool_offset, self.tool_offset)
 
     # --- Spindle
 

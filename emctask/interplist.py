@@ -1,7 +1,7 @@
 """The list between interpreter and execution: what canon queues, in program order, and what each entry waits for.
 
-An entry is ``(operation, payload, line, block)``; ``block`` counts the blocks that were read, so that the passes of a
-loop over one line are told apart. An Operation says what must be finished before it may begin (``before``) and
+An entry is ``(operation, payload, line, block)``; each block that is read has a Block of its own, so that the passes of
+a loop over one line are told apart. An Operation says what must be finished before it may begin (``before``) and
 what must be finished before the next entry may begin (``after``): this table, not the code around it, makes
 a probe or a tool change wait. Moves pass without waiting for anything but room in the planner.
 """
@@ -13,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
+
+from emctask.places import Block
 
 if TYPE_CHECKING:
     from emctask.sequencer import Sequencer
@@ -42,7 +44,7 @@ class Operation:
     after: Exec = Exec.DONE
 
 
-Entry = tuple[Operation, Any, int, int]
+Entry = tuple[Operation, Any, int, Block]
 
 MAX_LENGTH = 1000
 """Entries that reading ahead may collect before it waits for execution."""

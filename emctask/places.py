@@ -37,14 +37,18 @@ class Modes(NamedTuple):
 
 
 class Block:
-    """One block of the program that made moves; its codes are known when it has been executed."""
+    """One block of a program, and what is in force after it; until it has been executed, what was before it."""
 
-    __slots__ = ("file", "level", "modes")
+    __slots__ = ("file", "level", "modes", "offsets", "tool_offset")
 
-    def __init__(self, file: str, level: int) -> None:
+    def __init__(self, file: str, level: int, before: Block | None = None) -> None:
         self.file = file
         self.level = level
-        self.modes: Modes | None = None
+        self.modes: Modes | None = before.modes if before else None
+        self.offsets: tuple[float, ...] = before.offsets if before else ()
+        """The parameters of ``emctask.standing.STORED``."""
+        self.tool_offset: tuple[float, ...] = before.tool_offset if before else ()
+        """X to W, machine units."""
 
 
 class Place(NamedTuple):

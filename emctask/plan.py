@@ -7,12 +7,15 @@ interpreter takes over the state of the world and reads on. So the same program 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
+from emctask import standing
 from emctask.canon import TaskCanon
-from emctask.places import Modes
+from emctask.places import Block, Modes
+from emctask.runfromline import RunFromLine
 from nml import clock
 from nml.errors import InterpError
 from nml.inifile import IniFile
@@ -28,6 +31,9 @@ if TYPE_CHECKING:
 
 SLICE_S = 0.004  # host time that reading ahead may take before task looks at its other duties
 BLOCKS_PER_LOOK = 32  # blocks between two looks at the clock
+
+MAY_OFFSET = re.compile(r"#|g0*(?:10|28\.1|30\.1|52|5[4-9]|92)|m0*(?:2|30)(?!\d)", re.IGNORECASE)
+"""Words of a block after which the stored offsets may be others."""
 
 
 class Source(Enum):
@@ -51,11 +57,16 @@ class Plan:
         self.at_end = False
         self.must_synch = True
         self.file = ""
-        self.start_line = 0
-        self._modal_version = -1
+        self.dry_run: RunFromLine | None = None
+        """Run from line, as long as the lines before the first one are being read."""
+        self._modal_version = (-1, -1)
         self._modes = Modes((), (), ())
-        self._restore: Modes | None = None
-        """The modes where the machine was when a program was aborted; the interpreter had read on."""
+        self._offsets = standing.read_offsets(self.interp)
+        """The stored offsets as far as the program was read."""
+        self._before = Block("", 0)
+        """What was in force when the program or MDI line began."""
+        self._restore: Block | None = None
+        """Where the machine was when a program was aborted; the interpreter had read on."""
         self.interpreter_code = 0
 
     # --- Programs
@@ -82,6 +93,8 @@ class Plan:
         self.interp.close()
         self.interp.open(self.file)
         self._begin(Source.PROGRAM)
+        if line > 1:
+            self.dry_run = RunFromLine(self.interp, self.canon, self.file, line, self._before)
 
     def start_mdi(self, text: str) -> None:
         """Execute one line; InterpError when it is wrong."""
@@ -92,6 +105,9 @@ class Plan:
 
     def _begin(self, source: Source) -> None:
         self.source = source
+        self._before = self.canon.block = Block(self.file, 0)
+        self.canon.end_block(self._current_modes(), self._offsets)
+        self.sequencer.current_block = None
         self.at_end = False
         self.waiting_for_synch = False
         self.interpreter_code = 0
@@ -118,12 +134,26 @@ class Plan:
                 self.at_end = True
                 return
         until = clock.host_now() + SLICE_S
+        if self.dry_run is not None and not self._reach_line(self.dry_run, until):
+            return
         while not self.canon.queue.full:
             for _ in range(BLOCKS_PER_LOOK):
                 if not self._read_block():
                     return
             if clock.host_now() > until:
                 return
+
+    def _reach_line(self, dry_run: RunFromLine, until: float) -> bool:
+        """Go on with run from line; may the line be read?"""
+        if not dry_run.advance(until):
+            return False
+        modes = self._current_modes()
+        dry_run.check(modes)
+        self._offsets = standing.read_offsets(self.interp)
+        for text in dry_run.start(modes, self._offsets):
+            self.sequencer.hooks.show_text(text)
+        self.dry_run = None
+        return True
 
     def _read_block(self) -> bool:
         """Read and execute one block; False when reading must stop."""
@@ -145,14 +175,21 @@ class Plan:
         elif code == INTERP_EXECUTE_FINISH:
             canon.flush()
             self.waiting_for_synch = True
-        canon.end_block(self.modes)
+        if code == INTERP_EXIT or MAY_OFFSET.search(interp.block_text.replace(" ", "")):
+            self._offsets = standing.read_offsets(interp)
+        canon.end_block(self.modes, self._offsets)
 
     @property
     def modes(self) -> Modes:
+        """The codes that are active for the machine."""
+        return (self._before.modes if self.dry_run is not None else None) or self._current_modes()
+
+    def _current_modes(self) -> Modes:
         """The interpreter's active codes."""
         interp = self.interp
-        if interp.modal_version != self._modal_version:
-            self._modal_version = interp.modal_version
+        version = interp.modal_version, interp.state.motion  # a plain move changes nothing but its own code
+        if version != self._modal_version:
+            self._modal_version = version
             self._modes = Modes(interp.active_g_codes(), interp.active_m_codes(), interp.active_settings())
         return self._modes
 
@@ -183,19 +220,44 @@ class Plan:
         self.waiting_for_synch = False
         self.must_synch = False
         restore, self._restore = self._restore, None
-        if restore is not None and restore != self.modes:
-            self.interp.execute_mdi(restore.as_block())
+        if restore is not None:
+            self._bring_back(restore)
+            self._offsets = standing.read_offsets(self.interp)
 
-    def abort(self) -> None:
-        """Unwind everything; the interpreter must synchronise before it is used again, with the modes of that place."""
-        place = self.canon.places.find(self.canon.motion.status.id) if self.source is Source.PROGRAM else None
-        if place is not None:
-            self._restore = place.block.modes
+    def _bring_back(self, place: Block) -> None:
+        """The modes and offsets of ``place`` are in force again; the operator is told what cannot be."""
+        for line in standing.blocks(place, self.canon):
+            try:
+                self.interp.execute_mdi(line)
+            except InterpError as error:
+                self.sequencer.hooks.show_text(f"after the abort {line} is not in force again: {error.message}")
+        if place.modes is not None:
+            standing.set_motion(self.interp, place.modes)
+        self.interp.synch()
+
+    def abort(self, place: Block | None) -> None:
+        """Unwind everything; the interpreter must synchronise before it is used again, as it was at ``place``."""
+        self._restore = place or self._restore
         self.canon.forget()
         self.interp.abort()
+        if self.dry_run is not None:
+            self.dry_run.leave()
+            self.dry_run = None
+        if self._restore is not None:
+            standing.write_offsets(self.interp, self._restore.offsets)
         self.canon.forget()
         self.finish()
         self.must_synch = True
+
+    def block_in_execution(self) -> Block | None:
+        """The block that the machine is at: of the move under way, else of the last entry executed; None: idle."""
+        if self.dry_run is not None:
+            return self._before
+        if not self.active:
+            return None
+        motion = self.canon.motion
+        place = None if motion.settled else self.canon.places.find(motion.status.id)
+        return place.block if place is not None else self.sequencer.current_block or self._before
 
     def reset(self) -> None:
         """Back to the state after the start."""

@@ -82,10 +82,9 @@ class Runner:
             self._guard(begin)
         if task.plan.active and not task.paused:
             self._guard(task.plan.read_ahead)
-            if not task.plan.busy or task.plan.waiting_for_synch:
-                self._set(Interp.WAITING)
-            else:
-                self._set(Interp.READING)
+            if task.plan.active:
+                reads = task.plan.busy and not task.plan.waiting_for_synch
+                self._set(Interp.READING if reads else Interp.WAITING)
         self._step()
         try:
             task.sequencer.execute()
@@ -106,9 +105,21 @@ class Runner:
             self._stop_reading(f"internal error in the interpreter: {type(error).__name__}: {error}")
 
     def _stop_reading(self, text: str) -> None:
+        if self._task.plan.dry_run is not None:
+            self._give_up_start(text)
+            return
         self._task.operator.error(text)
         self._task.plan.stop_reading()
         self._pending_error = text
+
+    def _give_up_start(self, text: str) -> None:
+        """Run from line cannot begin: nothing was moved or switched, and nothing will be."""
+        task = self._task
+        task.plan.abort(task.plan.block_in_execution())
+        self.stepping = False
+        task.fail(text)
+        self.serial = 0
+        self._set(Interp.IDLE)
 
     def _synchronise_when_quiet(self) -> None:
         task = self._task
@@ -194,12 +205,19 @@ class Runner:
             if queue:
                 sequencer.only_block = queue[0][3]
             return
-        over = not queue or queue[0][3] != sequencer.only_block
+        over = not queue or queue[0][3] is not sequencer.only_block
         if over and sequencer.waits_for_nothing and self._quiet() and (queue or task.plan.busy):
             sequencer.only_block = None
             self._hold()
 
     # --- Abort
+
+    def stop_spindles(self) -> None:
+        """All spindles stop, and stay so until they are started again."""
+        task = self._task
+        for spindle in range(len(task.config.spindles)):
+            task.motion.send(MotCommand.SPINDLE_OFF, spindle=spindle)
+        task.canon.forget_spindles()
 
     def abort(self, reason: Reason) -> None:
         """Stop everything now; interpreter, motion and io agree again as soon as motion stands.
@@ -207,7 +225,8 @@ class Runner:
         If something ran, [RS274NGC]ON_ABORT_COMMAND follows then, unless it was that command which was aborted.
         """
         task = self._task
-        ran = task.plan.active or task.busy_with_program
+        place = task.plan.block_in_execution()
+        ran = task.plan.dry_run is None and (task.plan.active or task.busy_with_program)
         ran_on_abort = task.plan.active and task.mdi_text == task.config.on_abort
         self._begin = None
         self._pending_error = ""
@@ -217,10 +236,9 @@ class Runner:
         task.mdi_queue.clear()
         task.sequencer.abort()
         task.motion.send(MotCommand.ABORT)
-        for spindle in range(len(task.config.spindles)):
-            task.motion.send(MotCommand.SPINDLE_OFF, spindle=spindle)
+        self.stop_spindles()
         task.io.send_first(EMC_TOOL_ABORT(reason=reason))
-        task.plan.abort()
+        task.plan.abort(place)
         task.sequencer.abort()
         self._set(Interp.IDLE)
         self._on_abort = ran and bool(task.config.on_abort) and not ran_on_abort

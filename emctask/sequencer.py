@@ -14,6 +14,7 @@ from emctask.config import MachineConfig
 from emctask.interplist import Exec, InterpList
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
+from emctask.places import Block
 from emctask.usercommands import UserCommand
 from nml import clock
 
@@ -53,7 +54,8 @@ class Sequencer:
         self.hooks = hooks
         self.exec_state = Exec.DONE
         self.current_line = 0
-        self.only_block: int | None = None
+        self.current_block: Block | None = None
+        self.only_block: Block | None = None
         self.held = False
         self.spindle_wait = False
         self.deadline = 0.0
@@ -97,7 +99,7 @@ class Sequencer:
         room = motion.room()
         while queue:
             operation, payload, line, block = queue[0]
-            if self.only_block is not None and block != self.only_block:
+            if self.only_block is not None and block is not self.only_block:
                 break
             if operation is op.move:
                 if room <= 0:
@@ -108,7 +110,7 @@ class Sequencer:
                 self.exec_state = operation.before
                 return
             queue.popleft()
-            self.current_line = line
+            self.current_line, self.current_block = line, block
             operation.run(self, payload)
             if operation.after is not Exec.DONE:
                 self._after = self.exec_state = operation.after

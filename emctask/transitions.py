@@ -91,10 +91,8 @@ def shut_down(task: Task) -> None:
 
 
 def _switch_off(task: Task) -> None:
-    motion = task.motion
-    motion.send(MotCommand.DISABLE)
-    for spindle in range(len(task.config.spindles)):
-        motion.send(MotCommand.SPINDLE_OFF, spindle=spindle)
+    task.motion.send(MotCommand.DISABLE)
+    task.runner.stop_spindles()
     task.io.send(EMC_LUBE_OFF())
 
 

@@ -27,6 +27,17 @@ class SpindleState:
         self.direction = 0  # -1, 0, 1
         self.css_maximum = 0.0  # rpm; 0: no constant surface speed
 
+    def take(self, other: SpindleState) -> None:
+        """Become like ``other``."""
+        self.speed, self.direction, self.css_maximum = other.speed, other.direction, other.css_maximum
+
+    def same(self, other: SpindleState) -> bool:
+        """Does ``other`` turn in the same way? A spindle that is off has no speed."""
+        if not self.direction and not other.direction:
+            return True
+        mine = self.direction, self.speed, self.css_maximum
+        return mine == (other.direction, other.speed, other.css_maximum)
+
 
 class WorldModel(MoveCanon):
     """The answering half of task's canon; ``emctask.canon`` is the acting half."""
@@ -35,6 +46,7 @@ class WorldModel(MoveCanon):
         super().__init__(config.length_units, config.angle_units)
         if math.isclose(config.length_units * 25.4, 1.0, rel_tol=1e-3):
             MoveCanon.use_length_units(self, CANON_UNITS_INCHES)  # a machine in inches starts in G20
+        self.is_task = True
         self.config = config
         self.motion = motion
         self.io = io
@@ -112,7 +124,10 @@ class WorldModel(MoveCanon):
         return int(self.motion.settled)
 
     def get_external_tool_offset(self) -> tuple[float, ...]:
-        offset = self.coords.tool
+        return self.in_program_units(self.coords.tool)
+
+    def in_program_units(self, offset: tuple[float, ...]) -> tuple[float, ...]:
+        """An offset in machine units (X to W) as the program would write it."""
         length, angle = self.coords.length(1.0), self.config.angle_units
         return tuple(value / (angle if 3 <= axis < 6 else length) for axis, value in enumerate(offset))
 

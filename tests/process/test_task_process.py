@@ -9,59 +9,10 @@ from pathlib import Path
 import pytest
 
 import linuxcnc
-from tests.support.machine import copy_mill, running, wait_until
+from tests.support.desk import DONE, ERROR, Desk, at_desk
+from tests.support.machine import wait_until
 
 pytestmark = pytest.mark.process
-
-SPEED = 5.0
-DONE, ERROR = linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR
-TOOLS = "T1 P1 D3 Z1\nT2 P2 D6 Z-12.5\n"
-
-
-class Desk:
-    """A client that notes every text for the operator."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.stat, self.command, self.errors = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
-        self.texts: list[str] = []
-
-    def do(self, method, *arguments, timeout: float = 30.0) -> int:
-        """Give a command and wait for its end."""
-        method(*arguments)
-        result = self.command.wait_complete(timeout)
-        self.look()
-        return result
-
-    def look(self) -> linuxcnc.stat:
-        self.stat.poll()
-        while (message := self.errors.poll()) is not None:
-            self.texts.append(message[1])
-        return self.stat
-
-    def mdi(self, line: str) -> int:
-        return self.do(self.command.mdi, line)
-
-    def until(self, condition, what: str) -> None:
-        wait_until(lambda: condition(self.look()), what)
-
-    def ready(self, mode: int) -> None:
-        """On, homed, in this mode."""
-        assert self.do(self.command.state, linuxcnc.STATE_ESTOP_RESET) == DONE
-        assert self.do(self.command.state, linuxcnc.STATE_ON) == DONE
-        assert self.do(self.command.home, -1) == DONE
-        assert self.stat.homed[:3] == (1, 1, 1)
-        assert self.do(self.command.mode, mode) == DONE
-
-    def program(self, text: str) -> None:
-        """Open a program; auto mode."""
-        path = self.folder / "part.ngc"
-        path.write_text(text)
-        assert self.do(self.command.mode, linuxcnc.MODE_AUTO) == DONE
-        assert self.do(self.command.program_open, str(path)) == DONE
-
-    def run(self) -> None:
-        self.command.auto(linuxcnc.AUTO_RUN, 0)
 
 
 @pytest.fixture
@@ -72,11 +23,8 @@ def changes() -> dict[str, str]:
 
 @pytest.fixture
 def desk(tmp_path: Path, changes: dict[str, str]) -> Iterator[Desk]:
-    ini = copy_mill(tmp_path, changes=changes)
-    (tmp_path / "mill_mm.tbl").write_text(TOOLS)
-    with running(ini, speed=SPEED) as run:
-        run.port()
-        yield Desk(tmp_path)
+    with at_desk(tmp_path, changes=changes) as desk:
+        yield desk
 
 
 def x(desk: Desk) -> float:
@@ -246,3 +194,43 @@ def test_ten_clients_at_once_are_all_served(desk):
         clients[number % 10].feedrate(0.5 + number / 100)
     assert clients[9].wait_complete() == DONE
     assert desk.look().feedrate == 0.99
+
+
+def test_offsets_and_modes_that_were_only_read_are_not_in_force_after_an_abort(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program(
+        "G21 G90 G94 F600\nG1 X1\nG1 X100\nG92 X7\nG10 L2 P1 Y9\nG10 L2 P2 X3\nG20 G91 G55\nG43.1 Z2\nG1 X1\nM0\nM2\n"
+    )
+    desk.run()
+    desk.until(lambda s: s.position[0] > 3.0 and s.read_line >= 9, "cutting, read ahead")
+    assert desk.do(desk.command.abort) == DONE
+    here = x(desk)
+    assert here < 99.0
+    assert desk.do(desk.command.mode, linuxcnc.MODE_MDI) == DONE
+    status = desk.look()
+    assert (status.g5x_index, status.g5x_offset, status.g92_offset, status.tool_offset) == (1, *((0.0,) * 9,) * 3)
+    assert {10, 210, 900, 540, 922, 490}.issubset(status.gcodes)
+    assert desk.mdi("(DEBUG, #5222 #5241 #5210 #5211 #5420)") == DONE
+    assert [float(word) for word in desk.texts[-1].split()] == pytest.approx([0.0, 0.0, 0.0, 0.0, here], abs=1e-5)
+    assert desk.mdi("X50") == DONE, desk.texts
+    assert x(desk) == 50.0
+
+
+def test_offsets_that_were_executed_stay_after_an_abort(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 G94 F600\nG10 L2 P2 X3\nG55\nG92 Y4\nG43.1 Z2\nG4 P500\nG54\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.exec_state == linuxcnc.EXEC_WAITING_FOR_DELAY, "the dwell")
+    assert desk.do(desk.command.abort) == DONE
+    status = desk.look()
+    assert (status.g5x_index, status.g5x_offset[0], status.g92_offset[1], status.tool_offset[2]) == (2, 3.0, -4.0, 2.0)
+
+
+def test_a_spindle_that_an_abort_stopped_is_not_started_by_an_s_word(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    assert desk.mdi("M3 S500") == DONE
+    assert desk.stat.spindle[0]["direction"] == 1
+    assert desk.do(desk.command.abort) == DONE
+    assert desk.mdi("S800") == DONE
+    assert desk.mdi("G0 X1") == DONE
+    assert (desk.stat.spindle[0]["direction"], desk.stat.spindle[0]["speed"]) == (0, 0.0)
