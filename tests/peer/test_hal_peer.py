@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -34,21 +35,19 @@ COMPONENTS = """
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
 
 
-def peer(tmp_path: Path, text: str) -> str:
-    """What Debian's halrun prints, in namespaces of its own, as an ordinary user."""
-    path = tmp_path / "peer.hal"
-    path.write_text(text)
-    tmp_path.chmod(0o777)  # its home
-    for folder in tmp_path.parents[:2]:
-        folder.chmod(0o755)
-    command = f"cd {tmp_path} && timeout 60 {PEER} -k -f {path}"
+def peer(text: str) -> str:
+    """What Debian's halrun prints for a HAL file, in namespaces of its own, as an ordinary user in a folder of its own."""
     shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    environment["PATH"] = "/usr/bin:/bin"  # its own halcmd, not ours
-    done = subprocess.run(
-        [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "sh", "-c", command],
-        capture_output=True, text=True, timeout=90, check=False, env={**environment, "HOME": str(tmp_path)},
-    )  # fmt: skip
+    with tempfile.TemporaryDirectory(prefix="pyemc-peer-", dir="/var/tmp") as home:
+        os.chmod(home, 0o777)
+        path = Path(home, "peer.hal")
+        path.write_text(text)
+        done = subprocess.run(
+            [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups",
+             "timeout", "60", PEER, "-k", "-f", str(path)],
+            capture_output=True, text=True, timeout=90, check=False, cwd=home,
+            env={"HOME": home, "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
+        )  # fmt: skip
     return done.stdout
 
 
@@ -63,7 +62,7 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     loads = "".join(f"loadrt {name.replace(':', ' ')}\n" for name in COMPONENTS.split())
     text = f"loadrt threads\n{loads}show pin\nshow param\n"
     folder = tmp_path_factory.mktemp("peer")
-    return script(folder, text, "-k").stdout, peer(folder, text)
+    return script(folder, text, "-k").stdout, peer(text)
 
 
 def test_every_component_has_the_peers_pins_parameters_and_defaults(both: tuple[str, str]) -> None:
@@ -105,5 +104,5 @@ status lock
 
 
 def test_commands_print_what_the_peers_print(tmp_path: Path) -> None:
-    ours, theirs = script(tmp_path, COMMANDS, "-k").stdout, peer(tmp_path, COMMANDS)
+    ours, theirs = script(tmp_path, COMMANDS, "-k").stdout, peer(COMMANDS)
     assert ours.splitlines() == [line for line in theirs.splitlines() if not line.startswith("Note:")]
