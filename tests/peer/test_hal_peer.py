@@ -36,7 +36,7 @@ IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
 
 
 def peer(text: str) -> str:
-    """What Debian's halrun prints for a HAL file, in namespaces of its own, as an ordinary user in a folder of its own."""
+    """What Debian's halrun prints for a HAL file, as an ordinary user in namespaces and a folder of its own."""
     shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
     with tempfile.TemporaryDirectory(prefix="pyemc-peer-", dir="/var/tmp") as home:
         os.chmod(home, 0o777)
