@@ -110,7 +110,7 @@ def measure_ours() -> dict:
     python = sys.executable
     bin_folder = str(Path(python).parent)
     environment = {"PATH": f"{bin_folder}:{os.environ['PATH']}", "PYEMC_NAMESPACE": f"bench{os.getpid()}"}
-    results = run_machine([python, "-m", "linuxcnc", "INI"], environment | {"PYTHONPATH": str(ROOT)})
+    results = run_machine([python, "-m", "linuxcnc.launcher", "INI"], environment | {"PYTHONPATH": str(ROOT)})
     with tempfile.TemporaryDirectory() as folder:
         os.environ["PYTHONPATH"] = str(ROOT)
         results["rs274"] = time_rs274([python, "-m", "rs274ngc"], Path(folder))
