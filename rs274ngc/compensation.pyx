@@ -23,6 +23,7 @@ cdef int SIDE_OFF = CANON_SIDE_OFF, LEFT = CANON_SIDE_LEFT, RIGHT = CANON_SIDE_R
 cdef int XY = CANON_PLANE_XY, XZ = CANON_PLANE_XZ, INCHES = CANON_UNITS_INCHES
 cdef double CORNER_TOLERANCE = 0.05     # radians: flatter corners are no corners
 cdef double TINY = 1e-6
+cdef str ARC_GOUGES = "Arc move in concave corner cannot be reached by the tool without gouging"
 
 NOSE = {1: (1, -1), 2: (-1, -1), 3: (-1, 1), 4: (1, 1), 5: (1, 0), 6: (0, -1), 7: (-1, 0), 8: (0, 1)}
 """Lathe tools: per orientation, where the programmed point of the tool lies from the centre of its nose: Z, X, in radii."""
@@ -64,16 +65,16 @@ cdef class Pending:
         self.held.held.append(("move", (self, move)))
         return 0
 
-    cdef int settle(self, State s, double u, double v, bint checked=True) except -1:
+    cdef int settle(self, State s, double u, double v) except -1:
         """The open corner is at (u, v): make everything that was held, if the moves still go forward."""
         cdef Move move
         cdef double before, after
-        for move in self.moves if checked else ():
+        for move in self.moves:
             if move.kind == ARC:
                 before = sweep(move.su - move.cu, move.sv - move.cv, move.end[self.u] - move.cu, move.end[self.v] - move.cv, move.turns)
                 after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
                 if after > before + TINY:
-                    return fail(s, "Arc move in concave corner cannot be reached by the tool without gouging")
+                    return fail(s, ARC_GOUGES)
             elif not move.entry and (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
                 return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
                                "cannot be reached by the tool without gouging")
@@ -213,13 +214,14 @@ cdef class Corner:
     cdef double ou, ov      # programmed corner
     cdef double nu, nv      # offset of the new move there, of the length of the radius
     cdef double beta        # turn: positive outside, negative inside
+    cdef double u_turn      # from here on the tool must not go around the corner: half a turn, more or less
 
 
-cdef Corner corner(State s, Pending p, double ou, double ov, double nu, double nv):
+cdef Corner corner(State s, Pending p, double ou, double ov, double nu, double nv, double u_turn):
     cdef Corner c = Corner.__new__(Corner)
     cdef double pu = s.pos[p.u] - ou, pv = s.pos[p.v] - ov
     cdef double turn = atan2(pu * nv - pv * nu, pu * nu + pv * nv)
-    c.ou, c.ov, c.nu, c.nv = ou, ov, nu, nv
+    c.ou, c.ov, c.nu, c.nv, c.u_turn = ou, ov, nu, nv, u_turn
     c.beta = -turn if s.comp_side == LEFT else turn
     if c.beta < -M_PI / 2.0:
         c.beta += 2.0 * M_PI
@@ -227,12 +229,12 @@ cdef Corner corner(State s, Pending p, double ou, double ov, double nu, double n
 
 
 cdef bint inside(Corner c) noexcept:
-    return c.beta < -CORNER_TOLERANCE or c.beta > M_PI + CORNER_TOLERANCE
+    return c.beta < -CORNER_TOLERANCE or c.beta > c.u_turn
 
 
-cdef int outside(State s, Pending p, Corner c) except -1:
-    """Turn about the corner in an arc."""
-    cdef Move move = new_move(s, ARC)
+cdef int outside(State s, Pending p, Corner c, int kind) except -1:
+    """Turn about the corner in an arc, or at a rapid cut it off in a straight line."""
+    cdef Move move = new_move(s, kind)
     move.turns = -1 if s.comp_side == LEFT else 1
     move.cu, move.cv = c.ou, c.ov
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
@@ -259,9 +261,9 @@ cdef Move planar(Pending p):
     return None
 
 
-cdef bint line_and_circle(double lu, double lv, double du, double dv, double cu, double cv, double radius, Corner near, double* u, double* v) noexcept:
-    """Where a line through (lu, lv) meets a circle, of two places the one nearer to the corner."""
-    cdef double length = hypot(du, dv), along, root, height, first, second
+cdef bint line_and_circle(double lu, double lv, double du, double dv, double cu, double cv, double radius, bint leaving, double* u, double* v) noexcept:
+    """Where a line through (lu, lv) enters a circle, or leaves it."""
+    cdef double length = hypot(du, dv), along, root, height
     du /= length
     dv /= length
     along = (cu - lu) * du + (cv - lv) * dv
@@ -269,34 +271,36 @@ cdef bint line_and_circle(double lu, double lv, double du, double dv, double cu,
     if height > radius:
         return False
     root = sqrt(radius * radius - height * height)
-    first, second = along - root, along + root
-    if hypot(lu + first * du - near.ou, lv + first * dv - near.ov) > hypot(lu + second * du - near.ou, lv + second * dv - near.ov):
-        first = second
-    u[0], v[0] = lu + first * du, lv + first * dv
+    along += root if leaving else -root
+    u[0], v[0] = lu + along * du, lv + along * dv
     return True
 
 
-cdef bint circles(double au, double av, double ar, double bu, double bv, double br, Corner near, double* u, double* v) noexcept:
-    """Where two circles meet, of two places the one nearer to the corner."""
-    cdef double d = hypot(bu - au, bv - av), along, height, mu, mv, su, sv
+cdef bint circles(double au, double av, double ar, double bu, double bv, double br, bint left, double* u, double* v) noexcept:
+    """Where two circles meet: left or right of the line from the centre of the first to that of the second."""
+    cdef double d = hypot(bu - au, bv - av), along, height
     if d > ar + br or d < fabs(ar - br):
         return False
     along = (ar * ar - br * br + d * d) / (2.0 * d)
     height = sqrt(max(ar * ar - along * along, 0.0))
-    mu, mv = au + along * (bu - au) / d, av + along * (bv - av) / d
-    su, sv = -height * (bv - av) / d, height * (bu - au) / d
-    if hypot(mu + su - near.ou, mv + sv - near.ov) > hypot(mu - su - near.ou, mv - sv - near.ov):
-        su, sv = -su, -sv
-    u[0], v[0] = mu + su, mv + sv
+    if not left:
+        height = -height
+    u[0], v[0] = au + (along * (bu - au) - height * (bv - av)) / d, av + (along * (bv - av) + height * (bu - au)) / d
     return True
+
+
+cdef bint within(State s, int turns) noexcept:
+    """Whether the tool runs inside of an arc, on the side of its centre."""
+    return (s.comp_side == LEFT) == (turns > 0)
 
 
 cdef int meet_line(State s, Pending p, Corner c, double du, double dv) except -1:
     """Inside corner with a line that follows: the pending move ends where the parallels meet."""
     cdef Move last = planar(p)
-    cdef double u = s.pos[p.u], v = s.pos[p.v], cross, t
+    cdef double u = s.pos[p.u], v = s.pos[p.v], cross, t, radius
     if last is not None and last.kind == ARC:
-        if not line_and_circle(c.ou + c.nu, c.ov + c.nv, du, dv, last.cu, last.cv, hypot(u - last.cu, v - last.cv), c, &u, &v):
+        radius = hypot(u - last.cu, v - last.cv)
+        if not line_and_circle(c.ou + c.nu, c.ov + c.nv, du, dv, last.cu, last.cv, radius, not within(s, last.turns), &u, &v):
             return fail(s, "Arc to straight motion makes a corner the compensated tool can't fit in without gouging")
     elif last is not None:
         cross = last.du * dv - last.dv * du
@@ -309,18 +313,20 @@ cdef int meet_line(State s, Pending p, Corner c, double du, double dv) except -1
     return 0
 
 
-cdef int meet_arc(State s, Pending p, Corner c, double cu, double cv, double radius) except -1:
-    """Inside corner with an arc that follows."""
+cdef int meet_arc(State s, Pending p, double cu, double cv, double radius, int turns) except -1:
+    """Inside corner with an arc that follows: the tool comes to its circle from outside, or from within."""
     cdef Move last = planar(p)
     cdef double u = s.pos[p.u], v = s.pos[p.v]
+    cdef bint inner = within(s, turns), left
     if last is not None and last.kind == ARC:
         if hypot(last.cu - cu, last.cv - cv) < TINY:
             return fail(s, "Arc to arc motion is invalid because the arcs have the same center")
-        if not circles(last.cu, last.cv, hypot(u - last.cu, v - last.cv), cu, cv, radius, c, &u, &v):
+        left = inner == (last.turns > 0)
+        if not circles(last.cu, last.cv, hypot(u - last.cu, v - last.cv), cu, cv, radius, left, &u, &v):
             return fail(s, "Arc to arc motion makes a corner the compensated tool can't fit in without gouging")
     elif last is not None:
-        if not line_and_circle(u, v, last.du, last.dv, cu, cv, radius, c, &u, &v):
-            return fail(s, "Straight to arc motion makes a corner the compensated tool can't fit in without gouging")
+        if not line_and_circle(u, v, last.du, last.dv, cu, cv, radius, inner, &u, &v):
+            return fail(s, ARC_GOUGES)
     p.settle(s, u, v)
     s.pos[p.u], s.pos[p.v] = u, v
     return 0
@@ -360,18 +366,18 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
         alpha = atan2(dv, du) + side * M_PI / 2.0
         nu, nv = r * cos(alpha), r * sin(alpha)
     if not s.comp_first and length > 0.0:
-        c = corner(s, p, ou, ov, nu, nv)
+        c = corner(s, p, ou, ov, nu, nv, M_PI + CORNER_TOLERANCE)
         if inside(c):
             meet_line(s, p, c, du, dv)
         else:
-            p.settle(s, s.pos[p.u], s.pos[p.v], False)
+            p.settle(s, s.pos[p.u], s.pos[p.v])
     if code == 10 and s.feed_mode == 930:
         inverse_rate(s, b, straight_length(start, end))
     if length == 0.0:
         move.end[p.u], move.end[p.v] = s.pos[p.u], s.pos[p.v]
         return done(s, p, move, end)
-    if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE and code == 10:
-        outside(s, p, c)
+    if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE:
+        outside(s, p, c, ARC if code == 10 else TRAVERSE)
     move.du, move.dv = du, dv
     move.entry = s.comp_first
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
@@ -385,11 +391,11 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
     cdef Move move = new_move(s, ARC)
     cdef Arc a
     cdef double[3] start
-    cdef double r = s.comp_radius, toward, length, radius, gamma, t, eu, ev
+    cdef double r = s.comp_radius, toward, length, radius, gamma, t, eu, ev, nu, nv
     cdef double ou = programmed(s, p.u), ov = programmed(s, p.v)
     cdef Corner c
     read_arc(s, b, code, end, &a)
-    toward = 1.0 if (s.comp_side == LEFT) == (a.turns > 0) else -1.0    # the tool is on the side of the centre
+    toward = 1.0 if within(s, a.turns) else -1.0
     radius = hypot(a.centre[0] - a.end[0], a.centre[1] - a.end[1])
     if toward > 0.0 and radius <= r and not s.comp_first:
         return fail(s, "Tool radius not less than arc radius with comp")
@@ -414,15 +420,16 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         move.cu, move.cv = eu + t * cos(gamma), ev + t * sin(gamma)
     else:
         length = hypot(a.centre[0] - ou, a.centre[1] - ov)
-        c = corner(s, p, ou, ov, toward * r * (a.centre[0] - ou) / length, toward * r * (a.centre[1] - ov) / length)
+        nu, nv = toward * r * (a.centre[0] - ou) / length, toward * r * (a.centre[1] - ov) / length
+        c = corner(s, p, ou, ov, nu, nv, M_PI + toward * CORNER_TOLERANCE)
         if inside(c):
-            meet_arc(s, p, c, a.centre[0], a.centre[1], length - toward * r)
+            meet_arc(s, p, a.centre[0], a.centre[1], length - toward * r, a.turns)
         else:
-            p.settle(s, s.pos[p.u], s.pos[p.v], False)
+            p.settle(s, s.pos[p.u], s.pos[p.v])
     if s.feed_mode == 930:
         inverse_rate(s, b, arc_length(start, &a))
     if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE:
-        outside(s, p, c)
+        outside(s, p, c, ARC)
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
     move.end[p.u], move.end[p.v] = eu, ev
     return done(s, p, move, end)

@@ -11,8 +11,8 @@ from rs274ngc.canon import CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCK
 from rs274ngc.compensation cimport set_compensation
 from rs274ngc.machine cimport coolant, overrides, spindle
 from rs274ngc.modes cimport (
-    send_control, set_diameter_mode, set_distance, set_feed, set_feed_mode, set_ijk_distance, set_plane, set_speed,
-    set_spindle_mode, set_units,
+    send_control, set_diameter_mode, set_distance, set_feed, set_feed_mode, set_ijk_distance, set_plane, set_retract,
+    set_speed, set_spindle_mode, set_units,
 )
 from rs274ngc.offsets cimport select_origin, shift_tool_offset
 from rs274ngc.predefined import PLANE_CODES
@@ -27,6 +27,7 @@ class Saved:
     def __init__(self, State s):
         self.units, self.plane = s.units, s.plane
         self.incremental, self.ijk_absolute, self.diameter_mode = s.incremental, s.ijk_absolute, s.diameter_mode
+        self.retract_old_z = s.retract_old_z
         self.feed_mode, self.feed = s.feed_mode, s.feed
         self.origin_index = s.origin_index
         self.control = (s.control_mode, s.tolerance, s.naivecam_tolerance)
@@ -83,6 +84,8 @@ cdef int restore(State s, saved) except -1:
     if (s.control_mode, s.tolerance, s.naivecam_tolerance) != saved.control:
         s.control_mode, s.tolerance, s.naivecam_tolerance = saved.control
         send_control(s)
+    if s.retract_old_z != saved.retract_old_z:
+        set_retract(s, &b, 980 if saved.retract_old_z else 990)
     set_distance(s, &b, 910 if saved.incremental else 900)
     set_ijk_distance(s, &b, 901 if saved.ijk_absolute else 911)
     return 0

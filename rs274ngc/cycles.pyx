@@ -148,6 +148,7 @@ cdef int bore_stopped(State s, Block* b, Hole* h) except -1:
         at_height(s, h.clear, h.third, True)
     else:
         s.canon.program_stop()
+        s.pos[h.third] = h.clear
     return restart(s, n, turning)
 
 
@@ -161,10 +162,12 @@ cdef int restart(State s, int n, int turning) except -1:
 
 cdef int back_bore(State s, Block* b, Hole* h) except -1:
     """G87: through the hole beside its axis, back up against the work, and out again"""
-    cdef double x = s.cycle_i + h.x, y = s.cycle_j + h.y, middle
+    cdef double* beside = [s.cycle_i, s.cycle_j, s.cycle_k]
+    cdef double x = h.x + beside[h.first % 3], y = h.y + beside[h.second % 3], middle = beside[h.third % 3]
     cdef double hole_x = h.x, hole_y = h.y
     cdef int n = 0, turning = s.turning[0]
-    middle = s.cycle_k if not s.incremental else h.bottom + s.cycle_k
+    if s.incremental:
+        middle += h.bottom
     if turning == STOPPED:
         return fail(s, "Spindle not turning in g87", b.g_at[1])
     h.x, h.y = x, y
@@ -221,8 +224,6 @@ cdef int sticky_numbers(State s, Block* b, int code) except -1:
     elif code in (820, 860, 880, 890):
         if not again:
             return fail(s, f"Dwell time p word missing with g{code // 10}", b.g_at[1])
-    elif code in (740, 840) and not again:
-        s.cycle_p = 0.0
     if code == 730 or code == 830:
         if has(b, W_Q):
             s.cycle_q = b.value[W_Q]

@@ -54,6 +54,8 @@ cdef class Flow:
         self.line_start = self.source.position
         size = self.source.next_line(s.raw, LINE_SIZE)
         s.line = self.source.line
+        if size == -1:
+            return size         # what the state has is the last line: an error at the end of the file shows it
         s.raw_size = max(size, 0)
         if size == -2:
             s.raw[0] = 0

@@ -203,7 +203,7 @@ cdef int reference_move(State s, Block* b, int code) except -1:
     factor = s.canon.get_external_length_units() * (25.4 if s.units == INCHES else 1.0)
     for k in range(9):
         home[k] = s.params[first + k] / (factor if k < 3 or k > 5 else 1.0)
-    machine_to_program(s, home)
+    machine_place(s, home)
     if b.words & M_AXES:
         for k in range(9):
             if not has(b, axis_words[k]):

@@ -24,3 +24,4 @@ cdef double straight_length(const double* start, const double* end) noexcept
 cdef double arc_length(const double* start, const Arc* a) noexcept
 cdef int inverse_rate(State s, Block* b, double length) except -1
 cdef void machine_to_program(State s, double* point) noexcept
+cdef void machine_place(State s, double* point) noexcept

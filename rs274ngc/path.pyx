@@ -130,7 +130,7 @@ cdef int unwrap(State s, int axis, double value, double* end) except -1:
 
 
 cdef int find_machine_end(State s, Block* b, double* end) except -1:
-    """G53: the words are machine coordinates."""
+    """G53: the words are machine coordinates; as in LinuxCNC, without the tool offsets of A, B and C."""
     cdef int k
     cdef double value
     program_to_machine(s, end)
@@ -139,7 +139,18 @@ cdef int find_machine_end(State s, Block* b, double* end) except -1:
             value = b.value[axis_words[k]]
             end[k] = value * 0.5 if k == 0 and s.diameter_mode else value
     machine_to_program(s, end)
+    for k in range(3, 6):
+        if has(b, axis_words[k]):
+            end[k] += s.tool[k]
     return 0
+
+
+cdef void machine_place(State s, double* point) noexcept:
+    """A machine point to go to, in program coordinates; as in LinuxCNC, tool offsets of A, B and C do not count."""
+    cdef int k
+    machine_to_program(s, point)
+    for k in range(3, 6):
+        point[k] += s.tool[k]
 
 
 # --- Lengths and feeds

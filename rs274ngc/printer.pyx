@@ -288,9 +288,9 @@ cdef class PrintCanon(OfflineCanon):
         self.end()
 
     cpdef void nurbs_feed(self, int line, list control_points, int order) except *:
+        """LinuxCNC's printing canon then stands at X0 Y0, which shows when the program asks for its place: so does this one."""
         self.say("NURBS_FEED", f"{len(control_points)}, ...")
-        point = control_points[len(control_points) - 1]
-        self.move_to(point[0], point[1], self.pos[2], self.pos[3], self.pos[4], self.pos[5], self.pos[6], self.pos[7], self.pos[8])
+        self.pos[0] = self.pos[1] = 0.0
 
     cpdef void rigid_tap(self, int line, double x, double y, double z, double scale) except *:
         self.say("RIGID_TAP", f"{x:.4f}, {y:.4f}, {z:.4f}")

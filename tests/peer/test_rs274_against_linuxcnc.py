@@ -48,7 +48,7 @@ def refusal(errors: str) -> tuple[str, str]:
     """The first error and the block it is about."""
     lines = [line for line in errors.splitlines() if line and not line.startswith(("link (", "executing"))]
     lines = [re.sub(r"^\S+:\d+(:\d+)?: ", "", line) for line in lines]
-    return (lines[0], lines[1]) if len(lines) > 1 else ("", "")
+    return (lines[0], lines[1].rstrip()) if len(lines) > 1 else ("", "")
 
 
 def both(program: Path, folder: Path) -> tuple[subprocess.CompletedProcess[str], subprocess.CompletedProcess[str]]:

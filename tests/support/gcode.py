@@ -24,7 +24,28 @@ MODES = (
     "g20", "g21", "g90", "g91", "g98", "g99", "g61", "g61.1", "g64", "g94", "g40", "g64 p0.1", "g64 p.2 q.1",
 )  # fmt: skip
 
-CYCLES = (("g81", ""), ("g82", "p.5"), ("g83", "q.7"), ("g73", "q.9"), ("g85", ""), ("g89", "p1"))
+CYCLES = (
+    ("g81", ""), ("g82", "p.5"), ("g83", "q.7"), ("g73", "q.9"), ("g85", ""), ("g89", "p1"), ("g86", "p.3"),
+    ("g88", "p.3"), ("g74", ""), ("g84", ""), ("g87", "i1 j.5 k-1"),
+)  # fmt: skip
+
+PLANES = (("g17", "xyz", "ij"), ("g18", "zxy", "ki"), ("g19", "yzx", "jk"))
+"""Plane, first, second and helix axis, words of the centre."""
+
+TOKENS = (
+    "g0", "g1", "g2", "g3", "g4", "g5", "g5.1", "g5.2", "g5.3", "g7", "g8", "g10", "g17", "g18", "g19", "g20", "g21",
+    "g28", "g28.1", "g30", "g30.1", "g33", "g33.1", "g38.2", "g38.3", "g40", "g41", "g41.1", "g42", "g42.1", "g43",
+    "g43.1", "g49", "g52", "g53", "g54", "g55", "g59.3", "g61", "g64", "g73", "g76", "g80", "g81", "g82", "g83",
+    "g85", "g86", "g87", "g88", "g89", "g90", "g90.1", "g91", "g91.1", "g92", "g92.1", "g92.2", "g92.3", "g93", "g94",
+    "g95", "g96", "g97", "g98", "g99", "m0", "m1", "m3", "m4", "m5", "m6", "m7", "m8", "m9", "m19", "m48", "m49",
+    "m50", "m51", "m52", "m53", "m60", "m61", "m62", "m63", "m64", "m65", "m66", "m67", "m68", "m70", "m71", "m72",
+    "t1", "t2", "t3", "n7", "/", "(c)", "#1=2", "#<k>=[1]", "x#1", "y#<_x>", "z-#1", "x[2+", "y]", "g", "m", "x-",
+    "q", "@1", "^30", "i#<no>", "g#1", "$0", "$1",
+)  # fmt: skip
+"""What a line of no sense is made of, beside words with random numbers."""
+
+FUNCTIONS = ("abs", "sin", "cos", "tan", "asin", "acos", "exp", "ln", "round", "fix", "fup", "sqrt")
+OPERATORS = ("+", "-", "*", "/", "**", "mod", "gt", "ge", "lt", "le", "eq", "ne", "and", "or", "xor")
 
 MACHINE = (
     "m3 s100", "m4 s50", "m5", "m7", "m8", "m9", "m48", "m49", "m50 p0", "m51 p1", "m52 p1", "m53 p0", "m0", "m1",
@@ -95,18 +116,38 @@ class Generator:
         return [self.random.choice(MACHINE)]
 
     def cycle(self) -> list[str]:
-        plane, axes = self.random.choice((("g17", "xyz"), ("g17", "xyz"), ("g18", "zxy"), ("g19", "yzx")))
+        plane, axes, _ = self.random.choice((PLANES[0], *PLANES))
         first, second, third = axes
         code, extra = self.random.choice(CYCLES)
-        repeat = f" l{self.random.randint(1, 3)}" if self.random.random() < 0.3 else ""
+        repeat = f" l{self.random.randint(1, 3)}" if self.random.random() < 0.3 and code not in ("g74", "g84") else ""
         mode = self.random.choice(("g90", "g91"))
         r, bottom = (2.0, -2.0) if mode == "g90" else (0.5, -1.5)
+        if self.random.random() < 0.3:
+            r, bottom = round(self.random.uniform(-5, 5), 2), round(self.random.uniform(-9, 2), 2)
         return [
             f"{plane} {mode} g94 f100",
+            "m4 s100" if code == "g74" else "m3 s100",
             f"{code} {first}{self.number()} {second}{self.number()} {third}{bottom} r{r} {extra}{repeat}",
             f"{first}{self.number()}",
+            *([f"{second}{self.number()} r{r + 0.1:.2f}"] if self.random.random() < 0.3 else []),
             "g80",
             "g90",
+        ]
+
+    def threading(self) -> list[str]:
+        taper = self.random.choice(("", "", "e.5 l1", "e.3 l2", "e.4 l3", "q29.5", "h2 r1.5"))
+        return [
+            "g18 g90 m3 s100",
+            f"g0 x{self.number(10, 12)} z{self.number(2, 4)}",
+            self.random.choice(
+                (
+                    f"g76 p{self.number(0.5, 2)} z{self.number(-9, 0)} i-{self.random.uniform(0.5, 2):.3f}"
+                    f" j{self.random.uniform(0.1, 0.4):.3f} k{self.random.uniform(0.6, 2):.3f} {taper}",
+                    f"g33 z{self.number()} k{self.number(0.5, 2)}",
+                    f"g33.1 z{self.number()} k{self.number(0.5, 2)}",
+                )
+            ),
+            "g17",
         ]
 
     def polar(self) -> list[str]:
@@ -135,16 +176,114 @@ class Generator:
         return ["#<a>=1 #<_g>=2", f"{target}=[{self.number()} {operator} #1]", "g0 x[#<a> mod 10]"]
 
     def compensation(self) -> list[str]:
-        lines = ["g90 g17 g0 x0 y0", f"{self.random.choice(('g41.1', 'g42.1'))} d{self.number(0.1, 0.4)}", "g1 x5 y0"]
+        """A path of lines and arcs beside which a tool goes, in the XY or the XZ plane."""
+        plane, axes, words = self.random.choice((PLANES[0], PLANES[0], PLANES[1]))
+        first, second, third = axes
+        tool = self.random.choice((f".1 d{self.number(0.1, 0.4)}", f".1 d{self.number(0.5, 2)}", " d1", " d7"))
+        lines = [f"g90 {plane} g0 x0 y0 z0", f"{self.random.choice(('g41', 'g42'))}{tool}", f"g1 {first}5 {second}0"]
         x, y = 5.0, 0.0
-        for _ in range(self.random.randint(2, 5)):
-            x, y = x + self.random.uniform(-9, 9), y + self.random.uniform(-9, 9)
-            lines.append(f"g1 x{x:.3f} y{y:.3f}")
-        return [*lines, "g40", f"g1 x{x + 9:.3f} y{y + 9:.3f}"]
+        for _ in range(self.random.randint(2, 6)):
+            dx, dy = round(self.random.uniform(-9, 9), 2), round(self.random.uniform(-9, 9), 2)
+            x, y = x + dx, y + dy
+            high = f" {third}{self.number()}" if self.random.random() < 0.1 else ""
+            arc = f"{words[0]}{dx / 2:.3f} {words[1]}{dy / 2:.3f}"
+            kind = self.random.random()
+            if kind < 0.3:
+                lines.append(f"g{self.random.choice('23')} {first}{x:.2f} {second}{y:.2f} {arc}{high}")
+            else:
+                lines.append(f"g{1 if kind < 0.9 else 0} {first}{x:.2f} {second}{y:.2f}{high}")
+        return [*lines, "g40", f"g1 {first}{x + 9:.3f} {second}{y + 9:.3f}", "g17"]
+
+    def per_turn(self) -> list[str]:
+        return ["m3 s100", f"g95 f{self.number(0.1, 1)}", f"g1 {self.axes()}", "g94 f100"]
+
+    def spline(self) -> list[str]:
+        def pair(letters: str) -> str:
+            return " ".join(letter + self.number() for letter in letters)
+
+        return self.random.choice(
+            (
+                ["g17 g90 g1 x0 y0", f"g5 {pair('ijpqxy')}", f"g5 {pair('pqxy')}"],
+                ["g17", f"g5.1 {pair('xyij')}", f"g91 g5.1 {pair('xyij')}", "g90"],
+                [
+                    "g17 g90",
+                    f"g5.2 {pair('xy')} p1 l{self.random.randint(2, 4)}",
+                    *(f"{pair('xy')} p{weight}" for weight in (2, 1, 3)),
+                    "g5.3",
+                ],
+            )
+        )
+
+    def tables(self) -> list[str]:
+        l_word = self.random.choice(("l1", "l10", "l11"))
+        tool = self.random.choice((1, 2, 7))
+        extra = self.random.choice(("", "", f" r{self.number(0.1, 1)}", " q3", " i10 j20" if l_word == "l1" else ""))
+        use = self.random.choice(("g43", f"g43 h{tool}", f"g43.2 h{tool}", f"t{tool} m6 g43", f"m61 q{tool}", "g49"))
+        return [f"g10 {l_word} p{tool} {self.axes('xyzabc')}{extra}", use]
+
+    def expression(self) -> list[str]:
+        value = self.number(-2, 2)
+        for _ in range(self.random.randint(1, 4)):
+            other = self.random.choice((self.number(0, 3), "#1", "#<a>", "#<_y>", "#5420", "0", "2"))
+            value = self.random.choice(
+                (
+                    f"[{value} {self.random.choice(OPERATORS)} {other}]",
+                    f"{self.random.choice(FUNCTIONS)}[{value}]",
+                    f"atan[{value}]/[{other}]",
+                    f"-[{value}]",
+                )
+            )
+        label = self.label()
+        condition = f"o{label} if [exists[#<zz>] or [#2 lt 9]]"
+        return ["#<a>=1.5 #1=2", f"#2={value}", "(debug,#2)", condition, "#2=1", f"o{label} endif", "g0 x[#2 mod 10]"]
+
+    def label(self) -> int:
+        self.labels += 3
+        return self.labels
+
+    def nested(self) -> list[str]:
+        outer, inner = self.label(), self.label()
+        return [
+            f"#7=0\no{outer} while [#7 lt 4]",
+            "#7=[#7+1]",
+            f"o{inner} if [#7 eq {self.random.randint(1, 4)}]",
+            *self.straight(),
+            f"o{outer} continue",
+            f"o{inner} elseif [#7 eq {self.random.randint(1, 4)}]",
+            *self.machine(),
+            f"o{inner} else",
+            *self.straight(),
+            f"o{inner} endif",
+            f"o{outer} endwhile",
+        ]
+
+    def saved(self) -> list[str]:
+        mode = self.random.choice(MODES[2:])
+        return ["m70", mode, *self.straight(), f"f{self.random.randint(10, 99)}", "m72", *self.straight()]
+
+    def probing(self) -> list[str]:
+        return [f"g38.{self.random.randint(2, 5)} {self.axes()}", "(debug,#5061 #5062 #5070)", *self.straight()]
+
+    def absolute_centre(self) -> list[str]:
+        x, y, r = self.random.uniform(-9, 9), self.random.uniform(-9, 9), self.random.uniform(1, 5)
+        arc = f"g2 x{x + r:.4f} y{y + r:.4f} i{x + r:.4f} j{y:.4f}"
+        return ["g90 g17 g90.1", f"g0 x{x:.4f} y{y:.4f}", arc, "g91.1"]
+
+    def diameter(self) -> list[str]:
+        return ["g7", *self.random.choice((self.straight, self.offsets, self.tables))(), *self.straight(), "g8"]
+
+    def soup(self) -> list[str]:
+        """Words and codes in no order: most of it is refused."""
+        count = self.random.randint(0, 3)
+        words = [self.random.choice("xyzabcijkpqrldehfst") + self.number(-3, 5) for _ in range(count)]
+        words += [self.random.choice(TOKENS) for _ in range(self.random.randint(1, 3))]
+        self.random.shuffle(words)
+        return [self.random.choice((" ", "")).join(words)]
 
     KINDS: tuple[tuple[Callable[[Generator], list[str]], int], ...] = (
         (straight, 8), (modal, 4), (arc, 4), (offsets, 4), (machine, 5), (cycle, 2), (polar, 1), (inverse, 1),
-        (flow, 2), (parameter, 1), (compensation, 1),
+        (flow, 2), (parameter, 1), (compensation, 2), (threading, 1), (per_turn, 1), (spline, 1), (tables, 1),
+        (expression, 2), (nested, 1), (saved, 1), (probing, 1), (absolute_centre, 1), (diameter, 1),
     )  # fmt: skip
 
     def program(self, pieces: int = 25, mistake: bool = False) -> str:
@@ -154,5 +293,5 @@ class Generator:
         for _ in range(pieces):
             lines += self.random.choice(makers)(self)
             if mistake and self.random.random() < 0.1:
-                lines.append(self.random.choice(MISTAKES))
+                lines += self.soup() if self.random.random() < 0.7 else [self.random.choice(MISTAKES)]
         return "\n".join([*lines, "m2", ""])
