@@ -16,6 +16,7 @@ from emcmot.tp.geometry cimport position
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
 from emcmot.tp.model cimport AXES, CHAIN_NONE, CHAIN_WAITING, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
 from emcmot.tp.path cimport exit_limit, extend, feed_cap, feed_scale, refresh, sweep_caps
+from emcmot.tp.reverse cimport turn_forward
 from emcmot.tp.tap cimport at_rest, tap
 from emcmot.tp.tp cimport TP_FH_ENABLED, TP_TAP
 
@@ -42,13 +43,18 @@ cdef inline Segment* _seg(const TpState* tp, int64_t index) noexcept nogil:
     return &tp.segs[index & tp.seg_mask]
 
 
+cdef inline double _reached(const TpState* tp, const Span* span) noexcept nogil:
+    """Parameter of the segment, or of the blend, where the machine is on the active span."""
+    return span.u0 + (span.h - tp.u if tp.reversing else tp.u)
+
+
 cdef int64_t current_segment(const TpState* tp) noexcept nogil:
     """Index of the executing segment; seg_tail when there is none. A blend is half the one, half the other."""
     cdef const Span* span
     if tp.active >= tp.span_tail:
         return tp.seg_built
     span = _span(tp, tp.active)
-    return span.seg - (span.kind == SPAN_BLEND and span.u0 + tp.u < span.trim)
+    return span.seg - (span.kind == SPAN_BLEND and _reached(tp, span) < span.trim)
 
 
 cdef int64_t current_raw(const TpState* tp) noexcept nogil:
@@ -65,7 +71,7 @@ cdef int64_t current_raw(const TpState* tp) noexcept nogil:
     if seg.raw_count == 1:
         return seg.raw_first
     span = _span(tp, tp.active)
-    reached = span.u0 + tp.u
+    reached = _reached(tp, span)
     if span.kind == SPAN_BLEND:
         reached += seg.length - span.trim if index < span.seg else -span.trim
     for k in range(seg.raw_count):
@@ -109,7 +115,8 @@ cdef void advance(TpState* tp) noexcept nogil:
     for i in range(AXES):
         before[i] = tp.pos[i]
     tp.lead_known = 0
-    extend(tp)
+    if not tp.reversing:
+        extend(tp)
     sweep_caps(tp)
     if tp.active < tp.span_tail:
         _move(tp, tp.dt)
@@ -122,9 +129,11 @@ cdef void advance(TpState* tp) noexcept nogil:
 
 cdef void _drop_queue(TpState* tp) noexcept nogil:
     cdef int i
+    if tp.reversing:
+        turn_forward(tp)
     tp.raw_next = tp.raw_tail
     tp.seg_head = tp.seg_built = tp.seg_tail
-    tp.active = tp.settled = tp.new_spans = tp.span_tail
+    tp.active = tp.settled = tp.new_spans = tp.history = tp.span_tail
     tp.corner_known = 0
     tp.body_end = tp.body_goal = 0.0
     tp.aborting = tp.paused = tp.stepping = 0
@@ -148,9 +157,9 @@ cdef void _publish(TpState* tp) noexcept nogil:
         for i in range(AXES):
             tp.pos[i] = seg.start[i] + seg.rate[i] * tp.tap_s
     elif span.kind == SPAN_BLEND:
-        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, span.u0 + tp.u, tp.pos)
+        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, _reached(tp, span), tp.pos)
     else:
-        position(_seg(tp, span.seg), span.u0 + tp.u, tp.pos)
+        position(_seg(tp, span.seg), _reached(tp, span), tp.pos)
 
 
 cdef void _look_ahead(TpState* tp) noexcept nogil:
@@ -218,10 +227,12 @@ cdef int _waiting(TpState* tp) noexcept nogil:
     return 0
 
 
-cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
+cdef int _next_span(TpState* tp, Span* span) noexcept nogil:
     """Go on to the next span; 0 where the path ends."""
     cdef const Span* following
     tp.w = 0.0 if span.stop else tp.w * span.ratio * span.ratio
+    if tp.reversing and tp.active + 1 >= tp.span_tail:
+        return 0
     if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.raw_next < tp.raw_tail or tp.seg_built < tp.seg_tail):
         tp.w = 0.0                                   # at the end of what is built so far, but not of the queue
         return 0
@@ -229,6 +240,7 @@ cdef int _next_span(TpState* tp, const Span* span) noexcept nogil:
     tp.u = 0.0
     if tp.active >= tp.span_tail:
         tp.w = 0.0
+        span.stop = 1
         tp.seg_head = tp.seg_built
         return 0
     following = _span(tp, tp.active)

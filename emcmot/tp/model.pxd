@@ -16,6 +16,7 @@ from emcmot.tp.outputs cimport TpIo
 
 cdef enum:
     AXES = 9
+    BACK_RING = 512              # spans that a reverse run can go back
 
 cdef enum FeedUnit:          # which axes the length of a segment is measured along
     UNIT_XYZ = 0
@@ -132,6 +133,17 @@ ctypedef struct TpState:
     int64_t new_spans        # first span added or changed since the last backward pass
     int64_t sweep            # cursor of the recomputation after a change of feed caps
     int caps_changed
+
+    int64_t history          # spans before this one are no executed path
+    int reversing            # `spans` is `back_spans`: the executed path, mirrored, newest first
+    Span* back_spans
+    Span* ahead_spans        # the planned path, put aside while reversing
+    int ahead_mask
+    int64_t ahead_active
+    int64_t ahead_tail
+    int64_t ahead_settled
+    int64_t ahead_new
+    int64_t turned_at        # span of the planned path that the first mirrored one is the image of
 
     double u                 # parameter within the active span, 0..h
     double w                 # (du/dt)^2

@@ -77,15 +77,13 @@ cdef class Planner:
                 int enables=TP_FS_ENABLED | TP_FH_ENABLED) -> bool:
         """Queue an arc about `normal` (turn >= 0: counter-clockwise with that many more turns; -1 - n: clockwise)."""
         cdef TpSegment seg
-        cdef int i
         memset(&seg, 0, sizeof(seg))
         seg.kind = TP_ARC
         seg.turn = turn
         seg.spindle = -1
         _nine(end, seg.end)
-        for i in range(3):
-            seg.center[i] = center[i]
-            seg.normal[i] = normal[i]
+        seg.center[0], seg.center[1], seg.center[2] = center
+        seg.normal[0], seg.normal[1], seg.normal[2] = normal
         return self._add(&seg, vel, vel_max, acc, term, tolerance, id, motion_type, enables)
 
     cdef bint _add(self, TpSegment* seg, double vel, vel_max, double acc, int term, double tolerance, int id,
@@ -141,6 +139,10 @@ cdef class Planner:
 
     def step_once(self) -> None:
         tp_step_once(self.tp)
+
+    def reverse(self, bint back) -> bool:
+        """Run back along the executed path, or forwards again; False where the machine moves or there is no way back."""
+        return tp_set_reverse(self.tp, back) == TP_OK
 
     def abort(self) -> None:
         tp_abort(self.tp)

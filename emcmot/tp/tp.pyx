@@ -12,12 +12,15 @@ from libc.string cimport memcpy, memset
 from emcmot.tp.advance cimport advance, current_id, current_raw, current_segment
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.reverse cimport turn_back, turn_forward
+from emcmot.tp.tap cimport at_rest
 
 cdef enum:
     SPAN_RING = 8192
     SEGMENT_RING = 4096
     RAW_MARGIN = 8               # raws that a blend still needs behind the executing one
+    RAW_HISTORY = 1024           # executed ones that are kept for a reverse run
 
 cdef double SHORTEST_MOVE = 1e-9     # lu or degrees; shorter moves only hand their outputs to the next one
 
@@ -39,7 +42,7 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     if s == NULL:
         return NULL
     s.capacity = queue_size if queue_size > 4 else 4
-    while ring < s.capacity + RAW_MARGIN:
+    while ring < s.capacity + RAW_MARGIN + RAW_HISTORY:
         ring *= 2
     s.raw_mask = ring - 1
     s.seg_mask = SEGMENT_RING - 1
@@ -48,7 +51,8 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     s.ios = <TpIo*>calloc(ring, sizeof(TpIo))
     s.segs = <Segment*>calloc(SEGMENT_RING, sizeof(Segment))
     s.spans = <Span*>calloc(SPAN_RING, sizeof(Span))
-    if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL:
+    s.back_spans = <Span*>calloc(BACK_RING, sizeof(Span))
+    if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL or s.back_spans == NULL:
         tp_free(<Tp*>s)
         return NULL
     s.dt = 0.001
@@ -66,7 +70,8 @@ cdef void tp_free(Tp* tp) noexcept nogil:
     free(s.raws)
     free(s.ios)
     free(s.segs)
-    free(s.spans)
+    free(s.ahead_spans if s.reversing else s.spans)
+    free(s.back_spans)
     free(s)
 
 
@@ -100,6 +105,7 @@ cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
     memcpy(s.pos, pos, sizeof(s.pos))
     memcpy(s.goal, pos, sizeof(s.goal))
     memset(s.vel, 0, sizeof(s.vel))
+    s.history = s.span_tail
     return TP_OK
 
 
@@ -243,7 +249,16 @@ cdef void tp_abort(Tp* tp) noexcept nogil:
 
 
 cdef int tp_set_reverse(Tp* tp, int reverse) noexcept nogil:
-    return TP_BAD if reverse else TP_OK
+    """Turn round at rest; TP_BAD where the machine moves, or nothing is known of the way back."""
+    cdef TpState* s = _state(tp)
+    if (reverse != 0) == s.reversing:
+        return TP_OK
+    if not at_rest(s) or s.aborting:
+        return TP_BAD
+    if not reverse:
+        turn_forward(s)
+        return TP_OK
+    return TP_OK if turn_back(s) else TP_BAD
 
 
 cdef void tp_spindle(Tp* tp, int spindle, double revs, double speed_rps) noexcept nogil:
@@ -270,7 +285,8 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
     memcpy(status.pos, s.pos, sizeof(s.pos))
     memcpy(status.vel, s.vel, sizeof(s.vel))
     status.depth = <int>(s.raw_tail - current_raw(s))
-    status.free = _free(s)
+    status.free = max(0, _free(s))
+    status.reversing = s.reversing
     status.paused = s.paused
     status.done = _idle(s)
     status.spindle = -1
@@ -279,7 +295,7 @@ cdef void tp_get_status(const Tp* tp, TpStatus* status) noexcept nogil:
         return
     seg = _raw(s, current_raw(s))
     for i in range(AXES):
-        status.dtg[i] = seg.end[i] - s.pos[i]
+        status.dtg[i] = (seg.start[i] if s.reversing else seg.end[i]) - s.pos[i]
     status.distance_to_go = norm(status.dtg, seg.unit)
     status.current_vel = norm(s.vel, seg.unit)
     status.requested_vel = fmin(seg.vel, seg.vel_max)

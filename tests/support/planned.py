@@ -11,6 +11,15 @@ AMAX = np.array([500.0, 700, 400, 300, 300, 300, 250, 250, 250])
 ROUNDING = 1 + 1e-6
 
 
+def come_to_rest(planner):
+    """Pause, and run until the machine stands; the positions."""
+    planner.pause()
+    parts = [planner.step()]
+    while planner.status()["current_vel"] > 0.0:
+        parts.append(planner.step())
+    return np.concatenate(parts)
+
+
 class Program:
     """Moves as given to a planner and as ideal curves."""
 
