@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import shutil
 import statistics
 import subprocess
@@ -65,11 +66,13 @@ FIGURES = (
     Figure("servo cycle, 3 joints, motion-controller", "us", of("servo_us"), goal="15"),
     Figure("20,000 short segments on a curve", "s", of("wavy_curve.ngc"), goal="27"),
     Figure("100 zigzags of 20 mm", "s", of("zigzag.ngc"), goal="46.4"),
+    Figure("stat.poll() of a stock client over NML/TCP", "1/s", of("remote_polls"), True, "12,500"),
+    Figure("forecast: times real time, whole process", "x", of("forecast"), True, "100"),
     Figure("from `linuxcnc INI` to ready", "s", of("ready"), goal="2"),
 )
 
 
-def time_rs274(command: list[str], folder: Path) -> float:
+def time_rs274(command: list[str], folder: Path, environment: dict[str, str]) -> float:
     """Best of three runs of ``rs274 -g`` on a CAM program, s."""
     program = folder / "cam.ngc"
     if not program.exists():
@@ -77,7 +80,9 @@ def time_rs274(command: list[str], folder: Path) -> float:
     best = float("inf")
     for _ in range(3):
         start = time.perf_counter()
-        subprocess.run([*command, "-g", str(program)], stdout=subprocess.DEVNULL, check=True, cwd=folder)
+        subprocess.run(
+            [*command, "-g", str(program)], stdout=subprocess.DEVNULL, check=True, cwd=folder, env=os.environ | environment
+        )
         best = min(best, time.perf_counter() - start)
     return best
 
@@ -106,14 +111,45 @@ def run_machine(command: list[str], environment: dict[str, str]) -> dict:
     return results
 
 
+def forecast_speed(folder: Path, environment: dict[str, str]) -> float:
+    """Seconds of machining that a second of forecasting covers, whole process, on the curve of short segments."""
+    ini = machine.write(folder, "none")
+    start = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-m", "emcmot.forecast", str(ini), str(folder / "wavy_curve.ngc")],
+        capture_output=True, text=True, check=True, env=os.environ | environment,
+    )  # fmt: skip
+    seconds = time.perf_counter() - start
+    match = re.search(r"\(([\d.]+) s", done.stdout)
+    assert match, done.stdout
+    return float(match[1]) / seconds
+
+
+def remote_polls() -> tuple[dict, dict]:
+    """Polls per second of the stock client module over TCP, from either server (see net_bench)."""
+    done = subprocess.run(
+        [sys.executable, str(Path(__file__).with_name("net_bench.py")), "--json"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode:
+        return {}, {}
+    rows = json.loads(done.stdout.splitlines()[-1])
+    runs = next(row["runs"] for row in rows if row["label"].startswith("stock client: stat.poll()"))
+    return {"remote_polls": runs.get("ours")}, {"remote_polls": runs.get("LinuxCNC")}
+
+
 def measure_ours() -> dict:
     python = sys.executable
     bin_folder = str(Path(python).parent)
-    environment = {"PATH": f"{bin_folder}:{os.environ['PATH']}", "PYEMC_NAMESPACE": f"bench{os.getpid()}"}
-    results = run_machine([python, "-m", "linuxcnc.launcher", "INI"], environment | {"PYTHONPATH": str(ROOT)})
+    environment = {
+        "PATH": f"{bin_folder}:{os.environ['PATH']}",
+        "PYEMC_NAMESPACE": f"bench{os.getpid()}",
+        "PYTHONPATH": str(ROOT),
+    }
+    results = run_machine([python, "-m", "linuxcnc.launcher", "INI"], environment)
     with tempfile.TemporaryDirectory() as folder:
-        os.environ["PYTHONPATH"] = str(ROOT)
-        results["rs274"] = time_rs274([python, "-m", "rs274ngc"], Path(folder))
+        results["rs274"] = time_rs274([python, "-m", "rs274ngc"], Path(folder), environment)
+        results["forecast"] = forecast_speed(Path(folder), environment)
     return results
 
 
@@ -128,7 +164,7 @@ def measure_stock(user: str | None) -> dict:
         environment["HOME"] = os.path.expanduser(f"~{user}")
     results = run_machine(command, environment)
     with tempfile.TemporaryDirectory() as folder:
-        results["rs274"] = time_rs274([STOCK["rs274"]], Path(folder))
+        results["rs274"] = time_rs274([STOCK["rs274"]], Path(folder), environment)
     return results
 
 
@@ -156,6 +192,10 @@ def main() -> int:
     if not installed:
         print("LinuxCNC is not installed here: its column stays empty")
     stock = measure_stock(options.user) if installed and options.only != "ours" else {}
+    if installed and not options.only:
+        mine, theirs = remote_polls()
+        ours |= mine
+        stock |= theirs
     show(ours, stock)
     if options.json:
         options.json.write_text(json.dumps({"ours": ours, "linuxcnc": stock}, indent=1))
