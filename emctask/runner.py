@@ -105,7 +105,7 @@ class Runner:
             self._stop_reading(f"internal error in the interpreter: {type(error).__name__}: {error}")
 
     def _stop_reading(self, text: str) -> None:
-        if self._task.plan.dry_run is not None:
+        if self._task.plan.dry_run is not None or not self._task.plan.active:
             self._give_up_start(text)
             return
         self._task.operator.error(text)
@@ -113,7 +113,7 @@ class Runner:
         self._pending_error = text
 
     def _give_up_start(self, text: str) -> None:
-        """Run from line cannot begin: nothing was moved or switched, and nothing will be."""
+        """A program cannot begin at all, or not at the line: nothing was moved or switched, and nothing will be."""
         task = self._task
         task.plan.abort(task.plan.block_in_execution())
         self.stepping = False
