@@ -17,11 +17,11 @@ from rs274ngc.machine cimport (
 )
 from rs274ngc.modal cimport *
 from rs274ngc.modes cimport (
-    set_control, set_diameter_mode, set_distance, set_feed, set_feed_mode, set_ijk_distance, set_plane, set_retract, set_speed,
-    set_spindle_mode, set_units,
+    check_spindle_mode, set_control, set_diameter_mode, set_distance, set_feed, set_feed_mode, set_ijk_distance, set_plane,
+    set_retract, set_speed, set_spindle_mode, set_units,
 )
 from rs274ngc.motion cimport (
-    arc, cancel_motion, check_dwell, check_machine_coordinates, dwell, probe, reference_move, straight,
+    arc, cancel_motion, check_dwell, check_machine_coordinates, check_turns, dwell, probe, reference_move, straight,
 )
 from rs274ngc.offsets cimport (
     axis_offset, check_axis_offset, check_g10, select_origin, set_data, store_reference, tool_length,
@@ -75,8 +75,8 @@ g(92.3, 0, "", axis_offset, "Use the kept G92 offset again")
 # --- Group 1: motion
 g(0, 1, "", straight, "Rapid move")
 g(1, 1, "", straight, "Straight feed")
-g(2, 1, "IJKRP", arc, "Arc or helix, clockwise")
-g(3, 1, "IJKRP", arc, "Arc or helix, counter-clockwise")
+g(2, 1, "IJKRP", arc, "Arc or helix, clockwise", check_turns)
+g(3, 1, "IJKRP", arc, "Arc or helix, counter-clockwise", check_turns)
 g(5, 1, "IJPQ", cubic_spline, "Cubic spline")
 g(5.1, 1, "IJ", quadratic_spline, "Quadratic spline")
 g(5.2, 1, "PL", nurbs_point, "NURBS: control point")
@@ -139,7 +139,7 @@ for index, name in enumerate((54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59
 g(61, 13, "", set_control, "Exact path")
 g(61.1, 13, "", set_control, "Exact stop")
 g(64, 13, "PQ", set_control, "Path blending with tolerance P, naive CAM tolerance Q")
-g(96, 14, "D$", set_spindle_mode, "Constant surface speed, at most D turns a minute")
+g(96, 14, "D$", set_spindle_mode, "Constant surface speed, at most D turns a minute", check_spindle_mode)
 g(97, 14, "$", set_spindle_mode, "Constant spindle speed")
 g(7, 15, "", set_diameter_mode, "X in diameters")
 g(8, 15, "", set_diameter_mode, "X in radii")
@@ -206,14 +206,15 @@ cdef int SIDE_OFF = CANON_SIDE_OFF
 cdef int enhance(State s, Block* b) except -1:
     """Find the motion of a line: its own, or the modal one if there is something to move."""
     cdef bint axes = (b.words & (M_AXES | M_POLAR)) != 0
-    cdef bint taken = (b.g[0] >= 0 and g_code[b.g[0]].flags & AXES_TAKEN) or (b.g[8] >= 0 and g_code[b.g[8]].flags & AXES_TAKEN)
+    cdef bint taken_by_0 = b.g[0] >= 0 and g_code[b.g[0]].flags & AXES_TAKEN
+    cdef bint taken = taken_by_0 or (b.g[8] >= 0 and g_code[b.g[8]].flags & AXES_TAKEN)
     b.motion = -1
     if b.g[1] >= 0:
         if b.g[1] == 800:
-            if axes and not taken:
+            if axes and not taken_by_0:
                 return fail(s, "Cannot use axis values with g80", b.g_at[1])
         else:
-            if axes and b.g[0] >= 0 and taken:
+            if taken_by_0:
                 return fail(s, "Cannot use two g codes that both use axis values", b.g_at[1])
             if not axes and g_code[b.g[1]].flags & AXES_NEEDED:
                 return fail(s, "All axes missing with motion code", b.g_at[1])
@@ -246,6 +247,8 @@ cdef int check(State s, Block* b) except -1:
     for group in range(G_GROUPS):
         if b.g[group] >= 0:
             allowed |= g_code[b.g[group]].words
+            if group > 1 and g_code[b.g[group]].check != NULL:
+                g_code[b.g[group]].check(s, b, b.g[group])
     if b.motion >= 0:
         allowed |= g_code[b.motion].words
     if has(b, W_S):

@@ -65,11 +65,11 @@ cdef class Pending:
         self.held.held.append(("move", (self, move)))
         return 0
 
-    cdef int settle(self, State s, double u, double v) except -1:
+    cdef int settle(self, State s, double u, double v, bint checked=True) except -1:
         """The open corner is at (u, v): make everything that was held, if the moves still go forward."""
         cdef Move move
         cdef double before, after
-        for move in self.moves:
+        for move in self.moves if checked else ():
             if move.kind == ARC:
                 before = sweep(move.su - move.cu, move.sv - move.cv, move.end[self.u] - move.cu, move.end[self.v] - move.cv, move.turns)
                 after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
@@ -425,7 +425,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         if inside(c):
             meet_arc(s, p, a.centre[0], a.centre[1], length - toward * r, a.turns)
         else:
-            p.settle(s, s.pos[p.u], s.pos[p.v])
+            p.settle(s, s.pos[p.u], s.pos[p.v], False)
     if s.feed_mode == 930:
         inverse_rate(s, b, arc_length(start, &a))
     if not s.comp_first and not inside(c) and c.beta > CORNER_TOLERANCE:

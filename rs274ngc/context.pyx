@@ -82,7 +82,9 @@ cdef int restore(State s, saved) except -1:
     if s.origin_index != saved.origin_index:
         select_origin(s, &b, COORD_SYSTEM_CODES[saved.origin_index])
     if (s.control_mode, s.tolerance, s.naivecam_tolerance) != saved.control:
-        s.control_mode, s.tolerance, s.naivecam_tolerance = saved.control
+        if saved.control[0] == CANON_CONTINUOUS:
+            s.tolerance, s.naivecam_tolerance = saved.control[1:]
+        s.control_mode = saved.control[0]
         send_control(s)
     if s.retract_old_z != saved.retract_old_z:
         set_retract(s, &b, 980 if saved.retract_old_z else 990)

@@ -129,6 +129,12 @@ cdef int read_spindle(State s, Block* b, str message) except -1:
     return <int>spindle
 
 
+cdef int check_spindle_mode(State s, Block* b, int code) except -1:
+    if not has(b, W_S):
+        return fail(s, "S word missing with G96", b.g_at[14])
+    return 0
+
+
 cdef int set_spindle_mode(State s, Block* b, int code) except -1:
     """G96 with D and S, G97"""
     cdef int spindle = read_spindle(s, b, "Invalid spindle ($) number in Spindle Mode command")

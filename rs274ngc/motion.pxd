@@ -11,3 +11,4 @@ cdef int arc(State s, Block* b, int code) except -1
 cdef int probe(State s, Block* b, int code) except -1
 cdef int reference_move(State s, Block* b, int code) except -1
 cdef int cancel_motion(State s, Block* b, int code) except -1
+cdef int check_turns(State s, Block* b, int code) except -1

@@ -3,6 +3,8 @@
 Each function is the handler of the codes that ``codes`` names with it.
 """
 
+from libc.math cimport fabs, floor
+
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_PLANE_XY, CANON_PLANE_XZ, CANON_PLANE_YZ, CANON_SIDE_OFF, CANON_UNITS_INCHES
 from rs274ngc.compensation cimport compensated_arc, compensated_straight
@@ -97,6 +99,18 @@ cdef int indexer_move(State s, Block* b, int code, const double* end) except -1:
         traverse(s, end)
         s.canon.lock_rotary(s.line, joint)
         return 1
+    return 0
+
+
+cdef int check_turns(State s, Block* b, int code) except -1:
+    """P of G2, G3"""
+    cdef double turns = value_or(b, W_P, 1.0)
+    if fabs(turns - floor(turns + 0.5)) > 0.001:
+        return fail_word(s, "P value not an integer with M19 G2 or G3", W_P)
+    if floor(turns + 0.5) < 1.0:
+        return fail_word(s, "P value should be 1 or greater with G2 or G3", W_P)
+    if turns > 1.0e6:
+        return fail_word(s, "P value out of range with G2 or G3", W_P)
     return 0
 
 

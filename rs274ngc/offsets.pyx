@@ -299,10 +299,7 @@ cdef void turn_position(State s, const double* origin, double rotation) noexcept
 cdef int set_tool(State s, Block* b, int l) except -1:
     """L1: offsets as given; L10, L11: offsets that give the present position these coordinates"""
     cdef double[9] point
-    cdef double[9] wanted
     cdef double value, diameter, front, back
-    cdef double* fixture
-    cdef double rotation
     cdef int k, number = <int>b.value[W_P], index, orientation
     index = find_tool(s, number, b.at[W_P])
     entry = s.canon.get_external_tool_table(index)
@@ -318,22 +315,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
                 offset[k] = (value * 0.5 if k == 0 and s.diameter_mode else value) / parameter_factor(s, k)
     else:
         to_machine(s, point)
-        rotation = s.rotation
-        for k in range(9):
-            wanted[k] = s.pos[k] + (s.g92[k] if l == 11 else 0.0)
-            if has(b, axis_words[k]):
-                value = b.value[axis_words[k]]
-                wanted[k] = value * 0.5 if k == 0 and s.diameter_mode else value
-            if l == 10:
-                wanted[k] += s.g92[k]
-        fixture = &s.params[ORIGIN_FIRST + 8 * ORIGIN_STEP]
-        if l == 11:
-            rotation = fixture[9]
-        rotate(&wanted[0], &wanted[1], rotation)
-        for k in range(9):
-            if has(b, axis_words[k]):
-                value = fixture[k] * parameter_factor(s, k) if l == 11 else s.origin[k]
-                offset[k] = (point[k] - wanted[k] - value) / parameter_factor(s, k)
+        shift_to_here(s, b, l, point, offset)
     if has(b, W_R):
         diameter = b.value[W_R] * 2.0 / parameter_factor(s, 0)
     front, back = value_or(b, W_I, front), value_or(b, W_J, back)
@@ -345,6 +327,31 @@ cdef int set_tool(State s, Block* b, int l) except -1:
     if index == s.tool_index and index != 0:
         write_tool(s, 0, number, offset, diameter, front, back, orientation)
     return refresh_tool_parameters(s)
+
+
+cdef int shift_to_here(State s, Block* b, int l, const double* point, list offset) except -1:
+    """L10, L11: the tool offset that gives ``point`` the named coordinates in the active system (L10) or in G59.3 (L11).
+
+    Named and unnamed axes meet along the axes of that system, so with a rotation X changes the table's Y too.
+    """
+    cdef double[9] shift
+    cdef double[9] place
+    cdef double* fixture = &s.params[ORIGIN_FIRST + 8 * ORIGIN_STEP]
+    cdef double rotation = fixture[9] if l == 11 else s.rotation, value
+    cdef int k
+    for k in range(9):
+        shift[k] = <double>offset[k] * parameter_factor(s, k)
+        place[k] = point[k] - (fixture[k] * parameter_factor(s, k) if l == 11 else s.origin[k])
+    rotate(&shift[0], &shift[1], -rotation)
+    rotate(&place[0], &place[1], -rotation)
+    for k in range(9):
+        if has(b, axis_words[k]):
+            value = b.value[axis_words[k]]
+            shift[k] = place[k] - (value * 0.5 if k == 0 and s.diameter_mode else value) - (s.g92[k] if l == 10 else 0.0)
+    rotate(&shift[0], &shift[1], rotation)
+    for k in range(9):
+        offset[k] = shift[k] / parameter_factor(s, k)
+    return 0
 
 
 cdef int write_tool(State s, int index, int number, list offset, double diameter, double front, double back, int orientation) except -1:

@@ -230,12 +230,6 @@ cdef int read_arc(State s, Block* b, int code, const double* end, Arc* a) except
     cdef int* axes = plane_axes[s.plane]
     cdef double[2] start
     cdef double turns = value_or(b, W_P, 1.0)
-    if fabs(turns - floor(turns + 0.5)) > 0.001:
-        return fail_word(s, "P value not an integer with M19 G2 or G3", W_P)
-    if floor(turns + 0.5) < 1.0:
-        return fail_word(s, "P value should be 1 or greater with G2 or G3", W_P)
-    if turns > 1.0e6:
-        return fail_word(s, "P value out of range with G2 or G3", W_P)
     start[0] = s.pos[axes[0]]
     start[1] = s.pos[axes[1]]
     if s.comp_side != SIDE_OFF:

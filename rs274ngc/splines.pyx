@@ -17,12 +17,12 @@ cdef enum:
     NOT_XY = (1 << W_Z) | M_ABC | M_UVW
 
 
-cdef int check_spline(State s, Block* b, double* end) except -1:
+cdef int check_spline(State s, Block* b, double* end, str no_feed="Cannot make arc with zero feed rate") except -1:
     """What every spline needs; ``end``: its end point."""
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot convert spline with cutter radius compensation", b.g_at[1])
     if s.feed == 0.0:
-        return fail(s, "Cannot make arc with zero feed rate", b.g_at[1])
+        return fail(s, no_feed, b.g_at[1])
     if s.plane != XY:
         return fail(s, "Splines must be in the XY plane", b.g_at[1])
     if b.words & NOT_XY:
@@ -69,7 +69,7 @@ cdef int nurbs_point(State s, Block* b, int code) except -1:
     """G5.2 X Y P weight, L order: a control point; the first line may give only the weight of the start"""
     cdef double[9] end
     cdef bint first = s.motion != code
-    check_spline(s, b, end)
+    check_spline(s, b, end, "Cannot make a NURBS with 0 feedrate")
     if first:
         s.nurbs_order = value_or(b, W_L, NURBS_ORDER)
         s.nurbs_points = [(s.pos[0], s.pos[1], value_or(b, W_P, 1.0))]
