@@ -9,7 +9,8 @@ from linuxcnc._connection import error
 from linuxcnc._constants import *  # noqa: F403  every constant is public here
 from linuxcnc._error import error_channel
 from linuxcnc._ini import ini
+from linuxcnc._positionlogger import positionlogger
 from linuxcnc._stat import stat
 from linuxcnc._stat import tool_result as tool
 
-__all__ = ["command", "error", "error_channel", "ini", "stat", "tool"]
+__all__ = ["command", "error", "error_channel", "ini", "positionlogger", "stat", "tool"]
