@@ -13,7 +13,7 @@ from hal.components.declare import DECLARED
 
 GROUPS = (
     "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "control", "stepgen", "encoders",
-    "pulses",
+    "pulses", "codes", "geometry", "shaping", "counting",
 )  # fmt: skip
 MODULES = {
     "threads": ("threads", "load"),

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from hal._shm import BIT, FLOAT, IN, IO, OUT, RO, RW, S32, S64, U32, U64
 from hal._threads import Memory
+from hal.values import TYPE_NAMES
 from nml.errors import HalError
 
 if TYPE_CHECKING:
@@ -36,7 +37,10 @@ DECLARED: dict[str, Declaration] = {}
 
 @dataclass(frozen=True)
 class Entry:
-    """A pin or parameter; ``count`` of them where the name has a field: ``{}``, ``{:02}``, ``{letter}`` for A to E."""
+    """A pin or parameter; ``count`` of them where the name has a field: ``{}``, ``{:02}``, ``{letter}`` for A to E.
+
+    ``{type}`` in a name is the type's name, where that depends on the personality.
+    """
 
     is_pin: bool
     type: int
@@ -46,10 +50,15 @@ class Entry:
     default: Any = 0
     count: int = 1
     personal: Callable[[int], int] | None = None  # how many of ``count`` exist for a personality
+    type_of: Callable[[int], int] | None = None  # the type for a personality
+    default_of: Callable[[int, int], Any] | None = None  # the default for a number and a personality
 
-    def names(self, personality: int) -> Iterator[str]:
-        number = self.personal(personality) if self.personal else self.count
-        return (self.name.format(i, letter="ABCDE"[i % 5]) for i in range(number))
+    def items(self, personality: int) -> Iterator[tuple[str, int, Any]]:
+        """Name, type and default of each that exists for the personality."""
+        type_ = self.type_of(personality) if self.type_of else self.type
+        for i in range(self.personal(personality) if self.personal else self.count):
+            name = self.name.format(i, letter="ABCDE"[i % 5], type=TYPE_NAMES[type_])
+            yield name, type_, self.default_of(i, personality) if self.default_of else self.default
 
 
 def pin_in(type_: int, name: str, doc: str = "", default: Any = 0, **more: Any) -> Entry:
@@ -85,7 +94,7 @@ class Declaration:
     counted_by: str = "count"
     default_count: int = 1
     most: int | None = None
-    uses_fp: bool = True
+    uses_fp: bool | Callable[[int], bool] = True  # or by personality
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
     sizes: bool = False  # `counted_by` takes a list, a personality for each instance
@@ -94,6 +103,8 @@ class Declaration:
     state: tuple[int, ...] = ()  # machine words behind the pins
     keep_personality: bool = False  # as one more such word
     set_up: Callable[[int], None] | None = None  # called with the address of each new instance
+    instance: str = ""  # an instance's name with a field for its number, where it is not the component's
+    shared_prefix: str | None = None  # of the functions for all instances, where it is not the component's
 
     def load(self, host: Host, args: dict[str, str]) -> None:
         """``loadrt``: make every instance."""
@@ -128,7 +139,7 @@ class Declaration:
             most = "" if self.most is None else f" to {self.most}"
             given = args.get(self.counted_by, "")
             raise HalError(f"{self.name}: {self.counted_by}={given}: from 1{most} would be right")
-        return [f"{self.prefix}.{i}" for i in range(count)]
+        return [(self.instance or f"{self.prefix}.{{}}").format(i) for i in range(count)]
 
     def _personalities(self, args: dict[str, str]) -> list[int]:
         if self.decode is not None:
@@ -145,8 +156,8 @@ class Declaration:
         offset = 0
         for entry in self.entries:
             make = comp.pin if entry.is_pin else comp.param
-            for i, name in enumerate(entry.names(personality)):
-                item = make(f"{instance}{self.separator}{name}", entry.type, entry.dir, entry.default)
+            for i, (name, type_, default) in enumerate(entry.items(personality)):
+                item = make(f"{instance}{self.separator}{name}", type_, entry.dir, default)
                 memory.put(offset + i * WORD, item.address)
             offset += entry.count * WORD
         for i, word in enumerate((*self.state, personality) if self.keep_personality else self.state):
@@ -155,8 +166,11 @@ class Declaration:
             self.set_up(memory.address)
         for suffix, code in self.functions.items():
             name = f"{instance}.{suffix}" if suffix else instance
-            comp.function(name, code, memory.address, uses_fp=self.uses_fp)
+            comp.function(name, code, memory.address, uses_fp=self._fp(personality))
         return memory
+
+    def _fp(self, personality: int) -> bool:
+        return self.uses_fp if isinstance(self.uses_fp, bool) else self.uses_fp(personality)
 
     def _export_shared(self, comp: Component, memories: list[Memory]) -> None:
         """Functions for all instances at once; their argument is a count and that many addresses."""
@@ -167,8 +181,13 @@ class Declaration:
         everyone.put(0, len(memories))
         for i, memory in enumerate(memories):
             everyone.put((i + 1) * WORD, memory.address)
-        for suffix, code in self.shared.items():
-            comp.function(f"{self.prefix}.{suffix}", code, everyone.address, uses_fp=self.uses_fp)
+        for name, code in self.shared_functions():
+            comp.function(name, code, everyone.address, uses_fp=self._fp(0))
+
+    def shared_functions(self) -> list[tuple[str, int]]:
+        """Names and addresses of the functions for all instances."""
+        prefix = f"{self.prefix}." if self.shared_prefix is None else self.shared_prefix
+        return [(f"{prefix}{suffix}", code) for suffix, code in self.shared.items()]
 
 
 def numbers(component: str, args: dict[str, str], key: str) -> list[int]:

@@ -21,7 +21,12 @@ LinuxCNC's manual pages. Every function also has a pin `.time` and parameters `.
 
 def placeholder(entry: Entry) -> str:
     """The entry's name with its numbers as `M`."""
-    return entry.name.replace("{letter}", "M").replace("{:02}", "MM").replace("{}", "M")
+    return entry.name.replace("{letter}", "M").replace("{:02}", "MM").replace("{}", "M").replace("{type}", "TYPE")
+
+
+def instance(declaration: Declaration) -> str:
+    """An instance's name with its number as `N`."""
+    return (declaration.instance or f"{declaration.prefix}.{{}}").replace("{:02}", "NN").replace("{}", "N")
 
 
 def direction(entry: Entry) -> str:
@@ -43,13 +48,14 @@ def declared(declaration: Declaration) -> Iterator[str]:
         options.append("`personality=`")
     most = f", up to {declaration.most}" if declaration.most else ""
     yield f"Load: `loadrt {declaration.name}` with {', '.join(options)}{most}.\n"
-    names = [f"`{declaration.prefix}.N{'.' + suffix if suffix else ''}`" for suffix in declaration.functions]
-    names += [f"`{declaration.prefix}.{suffix}` (all channels)" for suffix in declaration.shared]
+    names = [f"`{instance(declaration)}{'.' + suffix if suffix else ''}`" for suffix in declaration.functions]
+    names += [f"`{name}` (all channels)" for name, _ in declaration.shared_functions()]
     yield f"Functions: {', '.join(names)}.\n"
     yield "| name | type | direction | meaning |\n|---|---|---|---|"
     for entry in declaration.entries:
-        name = f"{declaration.prefix}.N.{placeholder(entry)}"
-        yield f"| `{name}` | {TYPE_NAMES[entry.type]} | {direction(entry)} | {entry.doc}{default(entry)} |"
+        name = f"{instance(declaration)}.{placeholder(entry)}"
+        type_name = "any" if entry.type_of else TYPE_NAMES[entry.type]
+        yield f"| `{name}` | {type_name} | {direction(entry)} | {entry.doc}{default(entry)} |"
     yield ""
 
 
