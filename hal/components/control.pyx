@@ -17,8 +17,9 @@ cdef struct Pid:
     hal_pin maxcmdD, maxcmdDD, maxcmdDDD, maxoutput, index_enable, error_previous_target
     hal_pin tune_mode, tune_start, tune_type, tune_cycles, tune_effort
     hal_pin errorI, errorD, commandD, commandDD, commandDDD
-    double old_command, old_feedback, old_error, sum_error, cmd_d, cmd_dd, cmd_ddd, error_d
-    uint8_t started, old_index, limited
+    double old_command, old_feedback, sum_error, cmd_d, cmd_dd, cmd_ddd, error_d
+    uint8_t old_index
+    int32_t limited  # 1 at the upper limit, -1 at the lower
     # auto-tuning
     uint8_t tuning, relay_high
     uint32_t cycles
@@ -30,16 +31,16 @@ cdef double within(double value, double limit) noexcept nogil:
     return min(max(value, -limit), limit) if limit > 0.0 else value
 
 
+cdef double beyond(double value, double deadband) noexcept nogil:
+    """What of `value` lies outside of +-deadband."""
+    if value > deadband:
+        return value - deadband
+    return value + deadband if value < -deadband else 0.0
+
+
 cdef bint linked(hal_pin pin) noexcept nogil:
     """Whether the pin's word points away from the pin's own cell, which follows it."""
     return pin[0] != sizeof(int64_t)
-
-
-cdef void clear(Pid* s) noexcept nogil:
-    s.sum_error = s.error_d = s.old_error = s.cmd_d = s.cmd_dd = s.cmd_ddd = 0.0
-    s.old_command = at(s.command).f
-    s.old_feedback = at(s.feedback).f
-    s.limited = 0
 
 
 cdef void derive_command(Pid* s, double dt) noexcept nogil:
@@ -56,23 +57,21 @@ cdef void derive_command(Pid* s, double dt) noexcept nogil:
     s.cmd_ddd = within((s.cmd_dd - old_dd) / dt, at(s.maxcmdDDD).f)
 
 
-cdef void derive_error(Pid* s, double error, double dt) noexcept nogil:
-    if linked(s.feedback_deriv) or linked(s.command_deriv):
-        s.error_d = s.cmd_d - (at(s.feedback_deriv).f if linked(s.feedback_deriv)
-                               else (at(s.feedback).f - s.old_feedback) / dt)
-    else:
-        s.error_d = (error - s.old_error) / dt
+cdef void derive_error(Pid* s, double dt) noexcept nogil:
+    """How fast command and feedback part."""
+    cdef double feedback_d = (at(s.feedback).f - s.old_feedback) / dt
+    if linked(s.feedback_deriv):
+        feedback_d = at(s.feedback_deriv).f
     s.old_feedback = at(s.feedback).f
-    s.old_error = error
-    s.error_d = within(s.error_d, at(s.maxerrorD).f)
+    s.error_d = within(s.cmd_d - feedback_d, at(s.maxerrorD).f)
 
 
 cdef void put_output(Pid* s, double output, double dt) noexcept nogil:
     cdef double limit = at(s.maxoutput).f
     cdef double cut = within(output, limit)
-    s.limited = cut != output
+    s.limited = (output > cut) - (output < cut)
     at(s.output).f = cut
-    at(s.saturated).b = s.limited
+    at(s.saturated).b = s.limited != 0
     if s.limited:
         at(s.saturated_s).f += dt
         if at(s.saturated_count).s < 2147483647:
@@ -147,15 +146,16 @@ cdef void show_insides(Pid* s) noexcept nogil:
 
 cdef void pid(Pid* s, long period) noexcept nogil:
     cdef double dt = period * 1e-9
-    cdef double target = s.old_command if at(s.error_previous_target).b and s.started else at(s.command).f
+    cdef double target = s.old_command if at(s.error_previous_target).b else at(s.command).f
     cdef double error = target - at(s.feedback).f
-    s.started = 1
     at(s.error).f = error
-    if fabs(error) <= at(s.deadband).f:
-        error = 0.0
+    error = beyond(error, at(s.deadband).f)
     error = within(error, at(s.maxerror).f)
+    derive_command(s, dt)
+    derive_error(s, dt)
     if not at(s.enable).b or at(s.tune_mode).b:
-        clear(s)
+        s.sum_error = 0.0
+        s.limited = 0
         if at(s.enable).b:
             tune(s, error, dt)
         else:
@@ -165,10 +165,8 @@ cdef void pid(Pid* s, long period) noexcept nogil:
         show_insides(s)
         return
     s.tuning = 0
-    if not s.limited or s.sum_error * error < 0.0:  # no winding up against the limit
+    if s.limited * error <= 0.0:  # no winding up against the limit
         s.sum_error = within(s.sum_error + error * dt, at(s.maxerrorI).f)
-    derive_command(s, dt)
-    derive_error(s, error, dt)
     put_output(s, control(s, error), dt)
     show_insides(s)
 
@@ -191,7 +189,7 @@ declare("pid", "Proportional, integral and derivative controller with feed-forwa
     pin_out(FLOAT, "saturated-s", "for how long, s"), pin_out(S32, "saturated-count", "for how many periods"),
     pin_in(FLOAT, "Pgain", "", 1.0), pin_in(FLOAT, "Igain"), pin_in(FLOAT, "Dgain"), pin_in(FLOAT, "FF0", "of the command"),
     pin_in(FLOAT, "FF1", "of its derivative"), pin_in(FLOAT, "FF2", "of its second derivative"),
-    pin_in(FLOAT, "FF3", "of its third derivative"), pin_in(FLOAT, "bias"), pin_in(FLOAT, "deadband", "error that is ignored"),
+    pin_in(FLOAT, "FF3", "of its third derivative"), pin_in(FLOAT, "bias"), pin_in(FLOAT, "deadband", "so much of the error is ignored"),
     pin_in(FLOAT, "maxerror", "limits of 0 are none"), pin_in(FLOAT, "maxerrorI"), pin_in(FLOAT, "maxerrorD"),
     pin_in(FLOAT, "maxcmdD"), pin_in(FLOAT, "maxcmdDD"), pin_in(FLOAT, "maxcmdDDD"), pin_in(FLOAT, "maxoutput"),
     pin_in(BIT, "index-enable", "its falling edge excuses a jump of the command"),

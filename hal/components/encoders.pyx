@@ -38,7 +38,7 @@ cdef struct Encoder:
     int64_t time_ns, edge_ns  # now, and of the last count
     int64_t gap_ns  # between the last two counts
     int32_t index_raw, latch_raw
-    uint8_t index_seen, latch_seen
+    uint8_t index_armed, index_seen, latch_seen
     # the slow function's
     int32_t zero_raw, seen_raw
     int64_t seen_ns  # time of the last count that the velocity knows
@@ -74,10 +74,10 @@ cdef int missing_after(Encoder* s) noexcept nogil:
 
 cdef void see_index(Encoder* s, int missing) noexcept nogil:
     cdef bint z = at(s.phase_Z).b != 0
-    if ((z and not s.old_Z) or missing > 0) and at(s.index_enable).b:
+    if ((z and not s.old_Z) or missing > 0) and s.index_armed:
         s.index_raw = s.raw
         s.index_seen = 1
-        at(s.index_enable).b = 0
+        s.index_armed = 0
     s.old_Z = z
 
 
@@ -133,6 +133,8 @@ cdef void capture(Encoder* s) noexcept nogil:
     if s.index_seen:
         s.index_seen = 0
         s.zero_raw = s.index_raw
+        at(s.index_enable).b = 0
+    s.index_armed = at(s.index_enable).b
     if at(s.reset).b:
         s.zero_raw = s.raw
     at(s.counts).s = s.raw - s.zero_raw

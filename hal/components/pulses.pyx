@@ -22,7 +22,7 @@ cdef struct Pwmgen:
     double carry_s  # on-time still owed, when dithering, or sum of a density modulation
     double duty  # size of the duty cycle
     int64_t length_ns, on_ns, at_ns  # of this pulse: whole, on, gone
-    uint8_t backwards, modulate_density
+    uint8_t on, backwards, modulate_density
 
 cdef struct Pwmgens:
     size_t count
@@ -34,8 +34,6 @@ cdef long make_period_ns = 50000
 cdef void put(Pwmgen* s, bint on) noexcept nogil:
     if s.pwm != NULL:
         at(s.pwm).b = on
-    if s.dir != NULL:
-        at(s.dir).b = s.backwards
     if s.up != NULL:
         at(s.up).b = on and not s.backwards
         at(s.down).b = on and s.backwards
@@ -63,13 +61,15 @@ cdef void make_pulses(Pwmgens* all_, long period) noexcept nogil:
             put(s, False)
         elif s.modulate_density:
             s.carry_s += s.duty
-            put(s, s.carry_s >= 1.0)
-            if s.carry_s >= 1.0:
+            put(s, s.carry_s > 0.0)
+            if s.carry_s > 0.0:
                 s.carry_s -= 1.0
         else:
             if s.at_ns >= s.length_ns:
                 begin_pulse(s, period)
-            put(s, s.at_ns < s.on_ns)
+                s.on = 1
+            s.on = s.on and s.at_ns < s.on_ns
+            put(s, s.on)
             s.at_ns += period
 
 
@@ -93,6 +93,7 @@ cdef void update_channel(Pwmgen* s) noexcept nogil:
     cdef double high = min(max(at(s.max_dc).f, 0.0), 1.0)
     cdef double low = min(max(at(s.min_dc).f, 0.0), high)
     cdef double duty
+    cdef int64_t periods
     at(s.min_dc).f, at(s.max_dc).f = low, high
     if at(s.scale).f == 0.0:
         at(s.scale).f = 1.0
@@ -102,7 +103,13 @@ cdef void update_channel(Pwmgen* s) noexcept nogil:
         duty = max(duty, 0.0)
     s.backwards = duty < 0.0
     s.duty = min(max(fabs(duty), low), high)
+    if not s.modulate_density and not at(s.dither_pwm).b:
+        periods = s.length_ns // make_period_ns
+        s.duty = <double><int64_t>(s.duty * periods + 0.5) / periods
+        s.on_ns = <int64_t>(s.duty * periods + 0.5) * make_period_ns
     s.on_s = s.duty * s.length_ns * 1e-9
+    if s.dir != NULL:
+        at(s.dir).b = s.backwards
     at(s.curr_dc).f = -s.duty if s.backwards else s.duty
 
 

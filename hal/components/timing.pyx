@@ -68,16 +68,16 @@ cdef void timedelay(Timedelay* s, long period) noexcept nogil:
     cdef bint wanted = at(s.in_).b != 0
     if wanted == (at(s.out).b != 0):
         s.timer = 0.0
-    else:
-        s.timer += period * 1e-9
-        if s.timer >= (at(s.on_delay).f if wanted else at(s.off_delay).f):
-            at(s.out).b = wanted
-            s.timer = 0.0
+        return
+    s.timer += period * 1e-9
     at(s.elapsed).f = s.timer
+    if s.timer >= (at(s.on_delay).f if wanted else at(s.off_delay).f):
+        at(s.out).b = wanted
+        s.timer = 0.0
 
 declare("timedelay", "Delay of both edges: out follows in that has held for the delay", sizeof(Timedelay), [
     pin_in(BIT, "in"), pin_out(BIT, "out"), pin_in(FLOAT, "on-delay", "s", 0.5), pin_in(FLOAT, "off-delay", "s", 0.5),
-    pin_out(FLOAT, "elapsed", "time on the way to the next change, s"),
+    pin_out(FLOAT, "elapsed", "time that in and out have differed, now or the last time, s"),
 ], {"": <size_t>&timedelay})
 
 

@@ -22,7 +22,11 @@ pytestmark = [
 ]
 
 COMPONENTS = """
-    abs abs_s32 and2 bitslice:personality=3 bitwise blend comp constant conv_bit_float conv_bit_s32 conv_bit_u32
+    abs abs_s32 and2 bin2gray biquad bitslice:personality=3 bitwise blend charge_pump clarke2 clarke3 clarkeinv
+    comp constant corexy_by_hal demux:personality=5 differential feedcomp filter_kalman gearchange gray2bin histobins
+    joyhandle knob2float latencybins multiclick multiswitch:cfg=2,4 mux_generic:config=bb4,fu3,sf8 orient
+    scaled_s32_sums simple_tp sphereprobe weighted_sum:wsum_sizes=3,2
+    conv_bit_float conv_bit_s32 conv_bit_u32
     conv_float_s32 conv_float_u32 conv_s32_bit conv_s32_float conv_s32_u32 conv_u32_bit conv_u32_float conv_u32_s32
     counter:num_chan=1 dbounce ddt deadzone debounce:cfg=2 div2 edge encoder:num_chan=1 encoder_ratio:num_chan=1
     estop_latch flipflop hypot ilowpass integ invert limit1 limit2 limit3 lincurve:personality=3
@@ -35,13 +39,14 @@ COMPONENTS = """
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
 
 
-def peer(text: str) -> str:
+def peer(text: str, files: dict[str, str] | None = None) -> str:
     """What Debian's halrun prints for a HAL file, as an ordinary user in namespaces and a folder of its own."""
     shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
     with tempfile.TemporaryDirectory(prefix="pyemc-peer-", dir="/var/tmp") as home:
         os.chmod(home, 0o777)
         path = Path(home, "peer.hal")
-        path.write_text(text)
+        for name, content in {path.name: text, **(files or {})}.items():
+            Path(home, name).write_text(content)
         done = subprocess.run(
             [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups",
              "timeout", "60", PEER, "-k", "-f", str(path)],

@@ -352,6 +352,7 @@ def test_sim_encoder_and_encoder_agree(component: Load) -> None:
     assert bench.get("velocity") == pytest.approx(10.0, rel=0.02)
     assert bench.get("velocity_rpm") == pytest.approx(600.0, rel=0.02)
     bench.set(index_enable=True)
+    bench.run("encoder.capture-position")
     for _ in range(2500):
         bench.run("sim-encoder.make-pulses", period_ns=50_000)
         bench.run("encoder.update-counters", period_ns=50_000)

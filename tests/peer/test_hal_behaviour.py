@@ -1,0 +1,322 @@
+"""Side by side with Debian's halrun: fed with the same samples, a component gives the same samples."""
+
+from __future__ import annotations
+
+import math
+import os
+import random
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.peer.test_hal_peer import PEER, peer
+from tests.support.halsession import script
+
+pytestmark = [
+    pytest.mark.peer,
+    pytest.mark.process,
+    pytest.mark.skipif(PEER is None, reason="/usr/bin/halrun (linuxcnc-uspace) is not installed"),
+    pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("unshare"), reason="shielding the peer needs root"),
+]
+
+SAMPLES = 400
+DATA = "in.txt"
+Rows = Iterator[Sequence[float]]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A component between a streamer and a sampler; pins as ``letter:name``, letters as in ``cfg=``."""
+
+    load: str
+    functions: str
+    inputs: str
+    outputs: str
+    rows: Callable[[random.Random], Rows]
+    given: str = ""  # pins and parameters set before, ``name=value``
+    tolerance: float = 2e-6  # six digits after the point are printed
+
+
+def noise(*widths: float) -> Callable[[random.Random], Rows]:
+    """A random number for each input, from -width to width; an int is a whole number, True a bit."""
+
+    def one(chance: random.Random, width: float) -> float:
+        if width is True:
+            return chance.randrange(2)
+        return chance.randint(-width, width) if isinstance(width, int) else chance.uniform(-width, width)
+
+    return lambda chance: ([one(chance, width) for width in widths] for _ in range(SAMPLES))
+
+
+def presses(longest: int, pins: int = 1) -> Callable[[random.Random], Rows]:
+    """Buttons, each held and let go for random numbers of periods."""
+
+    def rows(chance: random.Random) -> Rows:
+        left, level = [0] * pins, [1] * pins
+        for _ in range(SAMPLES):
+            for i in range(pins):
+                if left[i] == 0:
+                    left[i], level[i] = chance.randint(1, longest), 1 - level[i]
+                left[i] -= 1
+            yield list(level)
+
+    return rows
+
+
+def steps(*heights: float, hold: int = 40) -> Callable[[random.Random], Rows]:
+    """Each input jumps to a new value every `hold` periods."""
+
+    def rows(chance: random.Random) -> Rows:
+        values: list[float] = []
+        for i in range(SAMPLES):
+            if i % hold == 0:
+                values = [chance.uniform(-height, height) for height in heights]
+            yield values
+
+    return rows
+
+
+def turning(counts: int = 60) -> Callable[[random.Random], Rows]:
+    """Quadrature of a shaft that swings to and fro, with an index every 40 counts."""
+
+    def rows(chance: random.Random) -> Rows:
+        for i in range(SAMPLES):
+            count = round(counts * math.sin(i * 2 * math.pi / 4 / SAMPLES))
+            yield [(count >> 1) & 1, ((count + 1) >> 1) & 1, int(count % 40 == 0)]
+
+    return rows
+
+
+CASES = {
+    "biquad-lowpass": Case(
+        "biquad", "biquad.0", "f:biquad.0.in", "f:biquad.0.out b:biquad.0.valid", noise(1.0),
+        "biquad.0.type=1 biquad.0.f0=50 biquad.0.Q=0.7071 biquad.0.enable=1",
+    ),
+    "biquad-notch": Case(
+        "biquad", "biquad.0", "f:biquad.0.in", "f:biquad.0.out b:biquad.0.valid", noise(1.0),
+        "biquad.0.type=2 biquad.0.f0=120 biquad.0.Q=1.5 biquad.0.enable=1",
+    ),
+    "biquad-given": Case(
+        "biquad", "biquad.0", "f:biquad.0.in b:biquad.0.enable", "f:biquad.0.out b:biquad.0.valid", noise(1.0, True),
+        "biquad.0.n0=0.2 biquad.0.n1=0.3 biquad.0.n2=0.1 biquad.0.d1=-0.4 biquad.0.d2=0.1",
+    ),
+    "lowpass": Case("lowpass", "lowpass.0", "f:lowpass.0.in b:lowpass.0.load", "f:lowpass.0.out", noise(10.0, True),
+                    "lowpass.0.gain=0.2"),
+    "timedelay": Case("timedelay", "timedelay.0", "b:timedelay.0.in", "b:timedelay.0.out f:timedelay.0.elapsed",
+                      presses(9), "timedelay.0.on-delay=0.0045 timedelay.0.off-delay=0.0025"),
+    "debounce": Case("debounce cfg=2", "debounce.0", "b:debounce.0.0.in b:debounce.0.1.in",
+                     "b:debounce.0.0.out b:debounce.0.1.out", presses(9, 2)),
+    "pid": Case(
+        "pid names=p", "p.do-pid-calcs", "f:p.command f:p.feedback b:p.enable", "f:p.output f:p.error b:p.saturated",
+        lambda chance: ([chance.uniform(-1.0, 1.0), chance.uniform(-1.0, 1.0), i % 50 > 5] for i in range(SAMPLES)),
+        "p.Pgain=3 p.Igain=20 p.Dgain=0.01 p.FF0=0.1 p.FF1=0.01 p.FF2=0.0001 p.maxoutput=40 p.maxerrorI=0.1 "
+        "p.deadband=0.05",
+    ),
+    "encoder": Case(
+        "encoder names=e", "encoder.update-counters encoder.capture-position",
+        "b:e.phase-A b:e.phase-B b:e.phase-Z", "s:e.counts f:e.position s:e.rawcounts",
+        turning(), "e.position-scale=4",
+    ),
+    "encoder-index": Case(
+        "encoder names=e", "encoder.update-counters encoder.capture-position",
+        "b:e.phase-A b:e.phase-B b:e.phase-Z", "s:e.counts f:e.position b:e.index-enable",
+        turning(), "e.position-scale=4 e.index-enable=1",
+    ),
+    "stepgen-velocity": Case(
+        "stepgen step_type=0 ctrl_type=v", "stepgen.update-freq stepgen.make-pulses stepgen.capture-position",
+        "f:stepgen.0.velocity-cmd", "b:stepgen.0.step b:stepgen.0.dir s:stepgen.0.counts f:stepgen.0.position-fb",
+        steps(400.0),
+        "stepgen.0.enable=1 stepgen.0.steplen=1 stepgen.0.dirhold=1 stepgen.0.dirsetup=1 stepgen.0.maxaccel=20000",
+    ),
+    "stepgen-position": Case(
+        "stepgen step_type=2", "stepgen.update-freq stepgen.make-pulses stepgen.capture-position",
+        "f:stepgen.0.position-cmd",
+        "b:stepgen.0.phase-A b:stepgen.0.phase-B s:stepgen.0.counts f:stepgen.0.position-fb",
+        steps(9.0),
+        "stepgen.0.enable=1 stepgen.0.maxvel=200 stepgen.0.maxaccel=9000", 1e-3,
+    ),
+    "pwmgen": Case(
+        "pwmgen output_type=1", "pwmgen.make-pulses pwmgen.update", "f:pwmgen.0.value",
+        "b:pwmgen.0.pwm b:pwmgen.0.dir f:pwmgen.0.curr-dc", steps(1.2), "pwmgen.0.enable=1 pwmgen.0.pwm-freq=50",
+    ),
+    "pdm": Case(
+        "pwmgen output_type=2", "pwmgen.make-pulses pwmgen.update", "f:pwmgen.0.value",
+        "b:pwmgen.0.up b:pwmgen.0.down f:pwmgen.0.curr-dc", steps(1.2), "pwmgen.0.enable=1 pwmgen.0.pwm-freq=0",
+    ),
+    "multiclick": Case(
+        "multiclick", "multiclick.0", "b:multiclick.0.in", " ".join(
+            f"b:multiclick.0.{number}-click{only}" for number in ("single", "double", "triple", "quadruple")
+            for only in ("", "-only")
+        ) + " s:multiclick.0.state",
+        presses(7),
+        "multiclick.0.max-hold-ns=5500000 multiclick.0.max-space-ns=5500000 multiclick.0.output-hold-ns=3500000",
+    ),
+    "multiswitch": Case(
+        "multiswitch cfg=4", "multiswitch.0", "b:multiswitch.0.up b:multiswitch.0.down",
+        "b:multiswitch.0.bit-00 b:multiswitch.0.bit-01 b:multiswitch.0.bit-02 b:multiswitch.0.bit-03", presses(5, 2),
+    ),
+    "weighted_sum": Case(
+        "weighted_sum wsum_sizes=3", "process_wsums",
+        "b:wsum.0.bit.0.in b:wsum.0.bit.1.in b:wsum.0.bit.2.in b:wsum.0.hold", "s:wsum.0.sum",
+        noise(True, True, True, True), "wsum.0.bit.1.weight=-7 wsum.0.offset=100",
+    ),
+    "mux_generic": Case(
+        "mux_generic config=ff4", "mux-gen.00",
+        "b:mux-gen.00.sel-bit-00 b:mux-gen.00.sel-bit-01 f:mux-gen.00.in-float-00 f:mux-gen.00.in-float-02",
+        "f:mux-gen.00.out-float", noise(True, True, 9.0, 9.0), "mux-gen.00.sel-int=1 mux-gen.00.in-float-03=4",
+    ),
+    "mux_generic-debounced": Case(
+        "mux_generic config=fs5", "mux-gen.00", "u:mux-gen.00.sel-int f:mux-gen.00.in-float-01",
+        "s:mux-gen.00.out-s32",
+        lambda chance: ([i // 9 % 7, chance.uniform(-9.0, 9.0)] for i in range(SAMPLES)),
+        "mux-gen.00.debounce-us=3000 mux-gen.00.suppress-no-input=1 mux-gen.00.in-float-03=4.7",
+    ),
+    "demux": Case(
+        "demux personality=4", "demux.0", "b:demux.0.sel-bit-00 b:demux.0.sel-bit-01 u:demux.0.sel-u32",
+        " ".join(f"b:demux.0.out-0{i}" for i in range(4)),
+        lambda chance: ([i & 1, i >> 1 & 1, i // 9 % 3] for i in range(SAMPLES)),
+    ),
+    "demux-bargraph": Case(
+        "demux personality=4", "demux.0", "u:demux.0.sel-u32", " ".join(f"b:demux.0.out-0{i}" for i in range(4)),
+        lambda chance: ([i % 6] for i in range(SAMPLES)), "demux.0.bargraph=1",
+    ),
+    "gray": Case(
+        "bin2gray\nloadrt gray2bin", "bin2gray.0 gray2bin.0", "u:bin2gray.0.in u:gray2bin.0.in",
+        "u:bin2gray.0.out u:gray2bin.0.out", lambda chance: ([i * i, i * i * i] for i in range(SAMPLES)),
+    ),
+    "scaled_s32_sums": Case(
+        "scaled_s32_sums", "scaled-s32-sums.0", " ".join(f"s:scaled-s32-sums.0.in{i}" for i in range(4)),
+        "s:scaled-s32-sums.0.out-s f:scaled-s32-sums.0.out-f", noise(9, 90, 900, 9000),
+        "scaled-s32-sums.0.scale1=-0.25 scaled-s32-sums.0.scale2=3.5",
+    ),
+    "corexy_by_hal": Case(
+        "corexy_by_hal", "corexy-by-hal.0",
+        "f:corexy-by-hal.0.alpha-fb f:corexy-by-hal.0.beta-fb f:corexy-by-hal.0.j0-motor-pos-cmd "
+        "f:corexy-by-hal.0.j1-motor-pos-cmd",
+        "f:corexy-by-hal.0.alpha-cmd f:corexy-by-hal.0.beta-cmd f:corexy-by-hal.0.j0-motor-pos-fb "
+        "f:corexy-by-hal.0.j1-motor-pos-fb", noise(9.0, 9.0, 9.0, 9.0),
+    ),
+    "differential": Case(
+        "differential", "differential.0",
+        "f:differential.0.roll-cmd f:differential.0.pitch-cmd f:differential.0.motor0-fb f:differential.0.motor1-fb",
+        "f:differential.0.motor0-cmd f:differential.0.motor1-cmd f:differential.0.roll-fb f:differential.0.pitch-fb",
+        noise(9.0, 9.0, 9.0, 9.0),
+    ),
+    "clarke": Case(
+        "clarke2\nloadrt clarke3\nloadrt clarkeinv", "clarke2.0 clarke3.0 clarkeinv.0",
+        "f:clarke2.0.a f:clarke2.0.b f:clarke3.0.a f:clarke3.0.b f:clarke3.0.c f:clarkeinv.0.x f:clarkeinv.0.y "
+        "f:clarkeinv.0.h f:clarkeinv.0.theta",
+        "f:clarke2.0.x f:clarke2.0.y f:clarke3.0.x f:clarke3.0.y f:clarke3.0.h f:clarkeinv.0.a f:clarkeinv.0.b "
+        "f:clarkeinv.0.c", noise(*[3.0] * 9), "", 3e-6,
+    ),
+    "filter_kalman": Case(
+        "filter_kalman", "filter-kalman.0", "f:filter-kalman.0.zk", "f:filter-kalman.0.xk-out", noise(5.0),
+        "filter-kalman.0.Rk=0.5 filter-kalman.0.Qk=0.01",
+    ),
+    "filter_kalman-reset": Case(
+        "filter_kalman", "filter-kalman.0",
+        "f:filter-kalman.0.zk b:filter-kalman.0.reset b:filter-kalman.0.passthrough",
+        "f:filter-kalman.0.xk-out", lambda chance: (
+            [chance.uniform(-5.0, 5.0), i // 11 % 4 == 0, i // 5 % 3 == 0] for i in range(SAMPLES)
+        ), "filter-kalman.0.Rk=0.5 filter-kalman.0.Qk=0.01",
+    ),
+    "sphereprobe": Case(
+        "sphereprobe", "sphereprobe.0", "s:sphereprobe.0.px s:sphereprobe.0.py s:sphereprobe.0.pz",
+        "b:sphereprobe.0.probe-out", noise(40, 40, 40),
+        "sphereprobe.0.cx=2 sphereprobe.0.cy=-3 sphereprobe.0.cz=5 sphereprobe.0.r=30",
+    ),
+    "orient": Case(
+        "orient", "orient.0", "f:orient.0.position b:orient.0.enable s:orient.0.mode f:orient.0.angle",
+        "f:orient.0.command f:orient.0.poserr b:orient.0.is-oriented",
+        lambda chance: (
+            [chance.uniform(-4.0, 4.0), i % 5 > 1, i // 5 % 3, chance.uniform(0.0, 360.0)] for i in range(SAMPLES)
+        ), "", 1e-3,
+    ),
+    "simple_tp": Case(
+        "simple_tp", "simple-tp.0.update", "f:simple-tp.0.target-pos b:simple-tp.0.enable",
+        "f:simple-tp.0.current-pos f:simple-tp.0.current-vel b:simple-tp.0.active",
+        lambda chance: ([5.0 * (i // 150 % 2) - 1.0, i < 350] for i in range(SAMPLES)),
+        "simple-tp.0.maxvel=60 simple-tp.0.maxaccel=2000", 1e-3,
+    ),
+    "feedcomp": Case(
+        "feedcomp", "feedcomp.0", "f:feedcomp.0.in f:feedcomp.0.vel b:feedcomp.0.enable", "f:feedcomp.0.out",
+        noise(9.0, 9.0, True), "feedcomp.0.feed=4",
+    ),
+    "gearchange": Case(
+        "gearchange", "gearchange.0", "b:gearchange.0.sel f:gearchange.0.speed-in b:gearchange.0.dir-in",
+        "f:gearchange.0.speed-out b:gearchange.0.dir-out", noise(True, 900.0, True),
+        "gearchange.0.scale2=2.5 gearchange.0.min1=100 gearchange.0.max1=500 gearchange.0.min2=300 "
+        "gearchange.0.max2=800 gearchange.0.reverse=1",
+    ),
+    "knob2float": Case(
+        "knob2float", "knob2float.0", "s:knob2float.0.counts b:knob2float.0.enable", "f:knob2float.0.out",
+        noise(20, True), "knob2float.0.scale=0.1 knob2float.0.max-out=2 knob2float.0.min-out=-1",
+    ),
+    "joyhandle": Case(
+        "joyhandle", "joyhandle.0", "f:joyhandle.0.in", "f:joyhandle.0.out", noise(1.2),
+        "joyhandle.0.deadband=0.1 joyhandle.0.power=2.5 joyhandle.0.scale=3 joyhandle.0.offset=0.2",
+    ),
+    "joyhandle-inverse": Case(
+        "joyhandle", "joyhandle.0", "f:joyhandle.0.in", "f:joyhandle.0.out",
+        lambda chance: ([chance.uniform(0.0, 1.2)] for _ in range(SAMPLES)),
+        "joyhandle.0.deadband=0.1 joyhandle.0.power=2.5 joyhandle.0.scale=3 joyhandle.0.inverse=1",
+    ),
+    "charge_pump": Case(
+        "charge_pump", "charge-pump", "b:charge-pump.enable",
+        "b:charge-pump.out b:charge-pump.out-2 b:charge-pump.out-4",
+        lambda chance: ([i % 23 > 2] for i in range(SAMPLES)),
+    ),
+    "histobins": Case(
+        "histobins", "histobins.0", "f:histobins.0.input s:histobins.0.index b:histobins.0.reset",
+        "s:histobins.0.check f:histobins.0.binvalue f:histobins.0.pextra f:histobins.0.nextra "
+        "f:histobins.0.input-min f:histobins.0.input-max u:histobins.0.nsamples "
+        "f:histobins.0.variance f:histobins.0.mean b:histobins.0.input-error",
+        lambda chance: ([chance.uniform(-3.0, 14.0), i % 12 - 1, i % 150 < 2] for i in range(SAMPLES)),
+        "histobins.0.nbins=10", 1e-4,
+    ),
+}  # fmt: skip
+
+
+def samples(case: Case, name: str) -> str:
+    """What is streamed, a line for each period."""
+    rows = case.rows(random.Random(name))
+    return "".join(" ".join(f"{float(value):.12g}" for value in row) + "\n" for row in rows)
+
+
+def session(case: Case) -> str:
+    """The HAL lines."""
+    inputs, outputs = ([pin.split(":") for pin in pins.split()] for pins in (case.inputs, case.outputs))
+    lines = [
+        "loadrt threads name1=t period1=1000000",
+        f"loadrt {case.load}",
+        f"loadrt streamer depth={SAMPLES + 10} cfg={''.join(letter for letter, _ in inputs)}",
+        f"loadrt sampler depth={SAMPLES + 10} cfg={''.join(letter for letter, _ in outputs)}",
+        *("setp {} {}".format(*setting.split("=")) for setting in case.given.split()),
+        *(f"net in{i} streamer.0.pin.{i} => {pin}" for i, (_, pin) in enumerate(inputs)),
+        *(f"net out{i} {pin} => sampler.0.pin.{i}" for i, (_, pin) in enumerate(outputs)),
+        *(f"addf {function} t" for function in ["streamer.0", *case.functions.split(), "sampler.0"]),
+        f"loadusr -w halstreamer {DATA}",
+        "start",
+        f"loadusr -w halsampler -n {SAMPLES}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def numbers(output: str) -> list[list[float]]:
+    """The samples that a session printed."""
+    return [[float(word) for word in line.split()] for line in output.splitlines() if line[:1] in "-0123456789 "]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_component_gives_the_peers_samples(name: str, tmp_path: Path) -> None:
+    case = CASES[name]
+    text, data = session(case), samples(case, name)
+    (tmp_path / DATA).write_text(data)
+    ours, theirs = numbers(script(tmp_path, text).stdout), numbers(peer(text, {DATA: data}))
+    assert len(theirs) == SAMPLES, "the peer did not run"
+    assert len(ours) == SAMPLES
+    for i, (mine, expected) in enumerate(zip(ours, theirs, strict=True)):
+        assert mine == pytest.approx(expected, rel=1e-6, abs=case.tolerance), f"sample {i}"
