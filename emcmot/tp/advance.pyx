@@ -24,6 +24,7 @@ cdef enum:
     PHASES_PER_PERIOD = 5000    # bound of the work of one period
     SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
     REFRESH_SHARE = 16           # longer ones: when this share of the path is new
+    FRESH_SPANS = 256            # so many are looked at without need, lest need finds more than a period can bear
 
 cdef double NO_WAY = 1e-13       # u
 cdef double SAME_SPEED = 1e-12   # relative
@@ -163,9 +164,13 @@ cdef void _publish(TpState* tp) noexcept nogil:
 
 
 cdef void _look_ahead(TpState* tp) noexcept nogil:
-    """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it."""
+    """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it.
+
+    A path that is known far ahead asks for nothing, and grows; it is refreshed in pieces.
+    """
     cdef int64_t fresh = tp.span_tail - tp.new_spans, known = tp.span_tail - tp.active
-    if fresh > 0 and tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known):
+    cdef int wanted = tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known)
+    if fresh >= FRESH_SPANS or (fresh > 0 and wanted):
         refresh(tp)
 
 

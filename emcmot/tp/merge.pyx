@@ -51,7 +51,7 @@ cdef int can_join(const Segment* before, const Segment* raw) noexcept nogil:
 
 
 cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
-    """Make the next segment; 0 when there is no raw, or when it is not urgent and the run may still go on."""
+    """Make the next segment, of how many raws; 0 when there is none, or it is not urgent and the run may still go on."""
     cdef int64_t first = tp.raw_next
     cdef int available = <int>min(tp.raw_tail - first, LONGEST_RUN), count = 1, run
     cdef double longest
@@ -76,7 +76,7 @@ cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
         _make_chord(tp, seg, first, count)
     tp.raw_next += count
     tp.seg_tail += 1
-    return 1
+    return count
 
 
 cdef double _longest_chord(const TpState* tp, int64_t first) noexcept nogil:

@@ -19,6 +19,8 @@ from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FH_ENABLED, TP_FS_ENABLED
 
 cdef enum:
     STEPS_PER_PERIOD = 96        # a segment takes three: its corner, the blend before it, itself
+    RAWS_PER_STEP = 4            # and one more for so many moves in a chord,
+    BUILT_PER_STEP = 4           # and for so many spans
     SPANS_PER_STEP = 64          # spans that one step of building may add
     SPANS_PER_SWEEP = 512        # spans per period that a change of feed caps recomputes
     MOTION_TRAVERSE = 1
@@ -127,15 +129,16 @@ cdef void extend(TpState* tp) noexcept nogil:
     have to slow down for want of it.
     """
     cdef int steps = 0, urgent
-    cdef int64_t last
+    cdef int64_t last, spans
     while steps < STEPS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP < tp.span_mask:
         if tp.seg_tail - tp.seg_head + 2 >= tp.seg_mask:
             return
         steps += 1
         last = tp.seg_built - 1
+        spans = tp.span_tail
         urgent = tp.active + 1 >= min(tp.settled, tp.span_tail)
         if tp.seg_built == tp.seg_tail:
-            take_segment(tp, urgent)
+            steps += take_segment(tp, urgent) // RAWS_PER_STEP
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
             _plan_corner(tp, last)
         elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY:
@@ -146,6 +149,8 @@ cdef void extend(TpState* tp) noexcept nogil:
             _start_segment(tp, tp.seg_built)
         else:
             return
+        if tp.span_tail > spans:
+            steps += (tp.span_tail - spans) // BUILT_PER_STEP
 
 
 cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:

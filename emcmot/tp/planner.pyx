@@ -3,6 +3,7 @@
 import numpy as np
 
 from libc.string cimport memset
+from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 
 from emcmot.tp.tp cimport *
 
@@ -166,6 +167,20 @@ cdef class Planner:
                 for i in range(TP_AXES):
                     out[k, i] = status.pos[i]
         return positions
+
+    def time_periods(self, int periods):
+        """Run servo periods, and tell what each has cost: nanoseconds, shape (periods,)."""
+        costs = np.empty(periods)
+        cdef double[::1] out = costs
+        cdef timespec before, after
+        cdef int k
+        with nogil:
+            for k in range(periods):
+                clock_gettime(CLOCK_MONOTONIC, &before)
+                tp_run_cycle(self.tp)
+                clock_gettime(CLOCK_MONOTONIC, &after)
+                out[k] = 1e9 * (after.tv_sec - before.tv_sec) + (after.tv_nsec - before.tv_nsec)
+        return costs
 
     def run_to_end(self, double limit=3600.0):
         """Run until the queue is empty and the machine at rest, or for `limit` seconds; the positions."""

@@ -19,6 +19,7 @@ from emcmot.tp.tap cimport at_rest
 cdef enum:
     SPAN_RING = 8192
     SEGMENT_RING = 4096
+    PAGE = 4096                  # bytes
     RAW_MARGIN = 8               # raws that a blend still needs behind the executing one
     RAW_HISTORY = 1024           # executed ones that are kept for a reverse run
 
@@ -35,6 +36,17 @@ cdef inline Segment* _raw(const TpState* s, int64_t index) noexcept nogil:
 
 # --- life -------------------------------------------------------------------------------------------------------------
 
+cdef void* _ring(size_t count, size_t size) noexcept nogil:
+    """Zeroed memory, each page of which is touched: the servo thread shall not be the first to do so."""
+    cdef volatile char* memory = <volatile char*>calloc(count, size)
+    cdef size_t offset = 0
+    if memory != NULL:
+        while offset < count * size:
+            memory[offset] = 0
+            offset += PAGE
+    return <void*>memory
+
+
 cdef Tp* tp_create(int queue_size) noexcept nogil:
     """A planner for at least `queue_size` segments, at rest at the origin, without limits; NULL: no memory."""
     cdef TpState* s = <TpState*>calloc(1, sizeof(TpState))
@@ -47,11 +59,11 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     s.raw_mask = ring - 1
     s.seg_mask = SEGMENT_RING - 1
     s.span_mask = SPAN_RING - 1
-    s.raws = <Segment*>calloc(ring, sizeof(Segment))
-    s.ios = <TpIo*>calloc(ring, sizeof(TpIo))
-    s.segs = <Segment*>calloc(SEGMENT_RING, sizeof(Segment))
-    s.spans = <Span*>calloc(SPAN_RING, sizeof(Span))
-    s.back_spans = <Span*>calloc(BACK_RING, sizeof(Span))
+    s.raws = <Segment*>_ring(ring, sizeof(Segment))
+    s.ios = <TpIo*>_ring(ring, sizeof(TpIo))
+    s.segs = <Segment*>_ring(SEGMENT_RING, sizeof(Segment))
+    s.spans = <Span*>_ring(SPAN_RING, sizeof(Span))
+    s.back_spans = <Span*>_ring(BACK_RING, sizeof(Span))
     if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL or s.back_spans == NULL:
         tp_free(<Tp*>s)
         return NULL
