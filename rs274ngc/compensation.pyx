@@ -42,6 +42,7 @@ cdef class Move:
     cdef double[9] end
     cdef double su, sv      # start
     cdef double cu, cv      # centre of an arc
+    cdef double full        # angle of an arc before a corner shortened it, radians
     cdef double du, dv      # direction of a line as programmed; 0, 0: not in the plane
     cdef bint entry         # a line that leads to the compensated path: it may end anywhere
 
@@ -68,12 +69,11 @@ cdef class Pending:
     cdef int settle(self, State s, double u, double v, bint checked=True) except -1:
         """The open corner is at (u, v): make everything that was held, if the moves still go forward."""
         cdef Move move
-        cdef double before, after
+        cdef double after
         for move in self.moves if checked else ():
             if move.kind == ARC:
-                before = sweep(move.su - move.cu, move.sv - move.cv, move.end[self.u] - move.cu, move.end[self.v] - move.cv, move.turns)
                 after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
-                if after > before + TINY:
+                if after > move.full + TINY:
                     return fail(s, ARC_GOUGES)
             elif not move.entry and (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
                 return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
@@ -432,4 +432,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         outside(s, p, c, ARC)
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
     move.end[p.u], move.end[p.v] = eu, ev
+    if s.comp_first:
+        ou, ov = move.su, move.sv
+    move.full = sweep(ou - move.cu, ov - move.cv, eu - move.cu, ev - move.cv, move.turns)
     return done(s, p, move, end)

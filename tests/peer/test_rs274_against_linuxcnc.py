@@ -107,6 +107,50 @@ AWKWARD = {
         g1 x-5 y3
         g40
         g1 x0 y0""",
+    "half a turn from a line into an arc beside which the tool goes": """\
+        g0 x-5 y5
+        g42.1 d.8
+        g1 x-4 y0
+        g1 x5
+        g3 x1.79222 y-2.89347 i-.1047 j-2.99817
+        g40
+        g1 x30""",
+    "cutting off a corner at a rapid": """\
+        g41.1 d.3
+        g1 x5
+        g0 x5.1 y-3
+        g0 x-3 y-2
+        g40
+        g1 x0 y0""",
+    "a tool set to here along rotated axes": """\
+        g10 l2 p9 x1 y2 z3 r30
+        g10 l2 p1 x.5 y.7 r20
+        g0 x3 y4 z5
+        g10 l11 p1 x1
+        g10 l10 p2 y1
+        g92 x1 y1
+        g10 l10 p2 x1""",
+    "boring from behind in all planes": """\
+        m3 s100
+        g87 x1 y2 z-2 r2 i1 j.5 k-1
+        g18
+        g87 x1 z2 y-2 r2 i1 j.5 k-1
+        g91 g19
+        g87 y1 z2 x-2 r2 i1 j.5 k-1""",
+    "leaving the tool in the hole to the operator": """\
+        m3 s100
+        g0 z9
+        g98 g88 x1 y2 z-2 r2 p.5
+        g80
+        g1 x9""",
+    "rotary tool offsets and machine coordinates": """\
+        g43.1 a3 b4 c5 x1
+        g10 l2 p1 x2 a10 b20 c30
+        g0 x1 a4 b5 c6
+        g28
+        g53 g0 a1 x2
+        g28.1
+        g30 a9 x3""",
 }
 """Programs that random ones seldom write, and in which the two once differed."""
 
