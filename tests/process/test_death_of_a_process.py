@@ -2,12 +2,12 @@
 
 import os
 import signal
-import time
 
 import numpy as np
 import pytest
 
 import linuxcnc
+from emctask.motion import WATCHDOG_S
 from tests.process.test_running_programs import ACCELERATION, PERIOD, VELOCITY
 from tests.support import verify
 from tests.support.machine import Run, copy_mill, processes, running, traces, wait_until
@@ -16,6 +16,8 @@ from tests.support.recorder import hal_text, recorded
 pytestmark = pytest.mark.process
 
 SPEED = 4.0
+STILL_PERIODS = 100  # servo periods without a change: at rest
+CATCHING_UP = 1.5  # a host that was held up makes good for the periods it missed
 PROGRAM = "G21 G90 G94 G64 P0.1\no1 while [1]\nG1 X100 Y50 F9000\nG1 X-100 Y-50\no1 endwhile\nM2\n"
 
 
@@ -52,6 +54,29 @@ def test_when_a_process_dies_the_machine_stops_under_its_limits(tmp_path, victim
     assert second.finish() == 0, second.errors
 
 
+def test_motion_alone_notices_the_death_of_task_within_its_watchdog(tmp_path):
+    """The launcher is halted and cannot help. The recorder counts servo periods, so a busy computer does not matter."""
+    data = tmp_path / "commands.bin"
+    ini = copy_mill(tmp_path, hal=hal_text(data))
+    part = tmp_path / "part.ngc"
+    part.write_text(PROGRAM)
+    with running(ini, "--run", str(part), speed=SPEED) as run:
+        wait_until(lambda: run.process.poll() is not None or (data.exists() and cutting(data)), "cutting")
+        assert run.process.poll() is None, run.errors
+        run.process.send_signal(signal.SIGSTOP)
+        os.kill(run.pids()["task"], signal.SIGKILL)
+        before = len(recorded(data))
+        wait_until(lambda: np.ptp(recorded(data)[-STILL_PERIODS:], axis=0).max() == 0.0, "standstill")
+        samples = recorded(data)
+        run.process.send_signal(signal.SIGCONT)
+        assert run.finish() == 1
+    last_moved = np.flatnonzero(np.diff(samples, axis=0).any(axis=1))[-1]
+    watchdog, stopping = WATCHDOG_S * SPEED / PERIOD, max(VELOCITY) / min(ACCELERATION) / PERIOD
+    assert before < last_moved < before + CATCHING_UP * watchdog + stopping
+    assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
+    assert traces() == []
+
+
 def test_when_the_realtime_host_dies_the_program_ends_with_an_error(tmp_path):
     ini = copy_mill(tmp_path)
     part = tmp_path / "part.ngc"
@@ -61,9 +86,7 @@ def test_when_the_realtime_host_dies_the_program_ends_with_an_error(tmp_path):
         status = linuxcnc.stat()
         wait_until(lambda: status.poll() or status.current_vel > 50.0, "cutting")
         os.kill(run.pids()["host"], signal.SIGKILL)
-        killed = time.monotonic()
         assert run.finish() == 1
-    assert time.monotonic() - killed < 15.0
     assert "realtime host" in run.errors
     assert traces() == []
     second = Run(ini, "--run", str(_short(tmp_path)), speed=20.0)
