@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import pytest
 
+from nml.errors import HalError
 from tests.unit.hal.conftest import Bench
 
 Load = Callable[..., Bench]
@@ -79,6 +80,30 @@ def test_gates_follow_their_truth_tables(component: Load, name: str, table: str)
         ("conv_s32_u32", (), {"in_": -1}, "out_of_range", True),
         ("conv_u64_s64", (), {"in_": 2**64 - 1, "clamp": True}, "out", 2**63 - 1),
         ("conv_u32_bit", (), {"in_": 8}, "out", True),
+        ("bin2gray", (), {"in_": 6}, "out", 5),
+        ("gray2bin", (), {"in_": 5}, "out", 6),
+        ("demux", ("personality=4",), {"sel_bit_00": True, "sel_u32": 1}, "out_02", True),
+        ("demux", ("personality=4",), {"sel_u32": 9}, "out_03", True),
+        ("scaled_s32_sums", (), {"in0": 3, "in1": 8, "scale1": 0.25}, "out_s", 5),
+        ("corexy_by_hal", (), {"j0_motor_pos_cmd": 3.0, "j1_motor_pos_cmd": 1.0}, "beta_cmd", 1.0),
+        ("corexy_by_hal", (), {"alpha_fb": 2.0, "beta_fb": 1.0}, "j1_motor_pos_fb", 1.0),
+        ("differential", (), {"roll_cmd": 3.0, "pitch_cmd": 1.0}, "motor1_cmd", 2.0),
+        ("clarke2", (), {"a": 1.0, "b": -0.5}, "y", 0.0),
+        ("clarke3", (), {"a": 1.0, "b": -0.5, "c": -0.5}, "x", 1.0),
+        ("clarkeinv", (), {"x": 1.0, "theta": 0.5}, "b", 0.5),
+        ("sphereprobe", (), {"pz": 9, "r": 10}, "probe_out", True),
+        ("sphereprobe", (), {"pz": 11, "r": 10}, "probe_out", False),
+        ("orient", (), {"enable": True, "position": 2.9, "angle": 36.0}, "command", 3.1),
+        ("orient", (), {"enable": True, "position": 2.9, "angle": 36.0, "mode": 2}, "command", 2.1),
+        ("feedcomp", (), {"in_": 6.0, "vel": 2.0, "feed": 4.0, "enable": True}, "out", 3.0),
+        ("gearchange", (), {"sel": True, "speed_in": -900.0, "max2": 800.0, "scale2": 2.0}, "speed_out", -400.0),
+        ("joyhandle", (), {"in_": -0.5}, "out", -0.25),
+        ("knob2float", (), {"counts": 3, "scale": 0.25, "enable": True}, "out", 0.75),
+        ("filter_kalman", (), {"zk": 3.0, "Rk": 1.0, "Qk": 1.0}, "xk_out", 2.0),
+        ("multiswitch", ("cfg=3",), {"down": True}, "bit_02", True),
+        ("biquad", (), {"in_": 2.0, "n0": 0.5, "enable": True}, "out", 1.0),
+        ("biquad", (), {"type": 1, "f0": 600.0, "enable": True}, "valid", False),
+        ("latencybins", (), {"index": 1001}, "pbinvalue", -1),
     ],
 )
 def test_a_component_gives_its_result_at_once(
@@ -430,3 +455,53 @@ def test_sim_parport_connects_both_ends(component: Load) -> None:
     bench.run("sim-parport.0.read")
     assert (bench.get("pin_02_out_fake"), bench.get("pin_03_out_fake")) == (True, True)
     assert (bench.get("pin_10_in"), bench.get("pin_10_in_not")) == (True, False)
+
+
+def test_mux_generic_converts_between_types(component: Load) -> None:
+    bench = component("mux_generic", "config=fs4", instance="mux-gen.00")
+    bench.set(in_float_03=-2.75, sel_bit_00=True, sel_bit_01=True)
+    bench.run("mux-gen.00")
+    assert bench.get("out_s32") == -2
+
+
+def test_mux_generic_says_what_is_wrong_with_its_configuration(bench: Bench) -> None:
+    with pytest.raises(HalError, match="bb4,fu12"):
+        bench.load("mux_generic", "config=bx4")
+
+
+def test_weighted_sum_holds_its_sum(component: Load) -> None:
+    bench = component("weighted_sum", "wsum_sizes=3", instance="wsum.0")
+    bench.set(**{"bit.2.in": True, "bit.0.in": True, "offset": 10})
+    bench.run("process_wsums")
+    assert bench.get("sum") == 15
+    bench.set(**{"bit.0.in": False, "hold": True})
+    bench.run("process_wsums")
+    assert bench.get("sum") == 15
+
+
+def test_multiclick_tells_two_clicks_from_three(component: Load) -> None:
+    bench = component("multiclick")
+    bench.set(max_space_ns=3_000_000, output_hold_ns=1_000_000)
+    assert series(bench, "multiclick.0", "in_", "10100000000", "double_click_only") == "00000001000"
+    assert series(bench, "multiclick.0", "in_", "10101000000", "double_click_only") == "00000000000"
+
+
+def test_simple_tp_arrives_without_passing_its_target(component: Load) -> None:
+    bench = component("simple_tp")
+    bench.set(target_pos=1.0, maxvel=20.0, maxaccel=500.0, enable=True)
+    places = []
+    for _ in range(150):
+        bench.run("simple-tp.0.update")
+        places.append(bench.get("current_pos"))
+    assert max(places) <= 1.0 + 1e-6
+    assert places[-1] == pytest.approx(1.0, abs=1e-4)
+    assert bench.get("active") is False
+
+
+def test_histobins_counts_what_lies_outside(component: Load) -> None:
+    bench = component("histobins")
+    bench.set(nbins=2, index=1)
+    for value in (0.0, 1.5, 1.9, -1.0, 7.0):
+        bench.set(input=value)
+        bench.run("histobins.0")
+    assert [bench.get(name) for name in ("binvalue", "nextra", "pextra")] == [2.0, 1.0, 1.0]
