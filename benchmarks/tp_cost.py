@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a servo period of the trajectory planner and adding a move to it cost: histograms, and how they grow with the queue.
+"""What a servo period of the trajectory planner and adding a move to it cost, also with a long queue: histograms.
 
     python benchmarks/tp_cost.py [--queue N ...] [--runs N]
 
-The planner does the same work in each run of a job, so the least of several runs is what the work itself costs; the rest
-is the host. The queue is kept full, and in half of the jobs the feed override changes all the time.
+The planner does the same work in each run of a job, so the least of several runs is what the work itself costs; the
+rest is the host. The queue is kept full, and in half of the jobs the feed override changes all the time.
 """
 
 from __future__ import annotations
@@ -96,7 +96,8 @@ def main() -> None:
     options.add_argument("--runs", type=int, default=3, help="runs of each job")
     chosen = options.parse_args()
     console = Console(width=140)
-    table = Table("job", "queue", "period us: median", "99 %", "99.9 %", "largest", "add us: median", "99 %", "99.9 %", "largest")
+    percentiles = ("median", "99 %", "99.9 %", "largest")
+    table = Table("job", "queue", *(f"{what} us: {p}" for what in ("period", "add") for p in percentiles))
     shown: dict[str, tuple[Array, Array]] = {}
     for name, (curve, tolerance) in JOBS.items():
         for queue in chosen.queue:

@@ -43,6 +43,17 @@ def test_corners_are_rounded_within_the_tolerance(tolerance):
     assert report.corner > 0.5 * min(tolerance, 0.5)
 
 
+def test_square_corners_take_the_least_time_that_the_tolerance_allows():
+    program, a, tolerance = Program(tolerance=0.01, vel=90.0, vel_max=90.0), 400.0, 0.01
+    for axis in (0, 1):
+        program.planner.set_limits(axis, 90.0, a)
+    for k in range(10):
+        program.line(20.0 * ((k + 1) % 2), k).line(20.0 * ((k + 1) % 2), k + 1)
+    report = program.check(program.run(), tolerance)
+    both = math.sqrt(8 * tolerance / (math.sqrt(2) * a))  # both axes accelerate, and pass the corner at the tolerance
+    assert report.seconds == pytest.approx(10 * (20 / 90 + 90 / a + 2 * math.sqrt(1 / a)) - 19 * both, abs=2 * DT)
+
+
 def test_a_larger_tolerance_takes_less_time():
     times = [len(square(Program(tolerance=t)).run()) for t in (0.001, 0.01, 0.1, 0.5)]
     assert times == sorted(times, reverse=True)
