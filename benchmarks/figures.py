@@ -80,9 +80,8 @@ def time_rs274(command: list[str], folder: Path, environment: dict[str, str]) ->
     best = float("inf")
     for _ in range(3):
         start = time.perf_counter()
-        subprocess.run(
-            [*command, "-g", str(program)], stdout=subprocess.DEVNULL, check=True, cwd=folder, env=os.environ | environment
-        )
+        whole = os.environ | environment
+        subprocess.run([*command, "-g", str(program)], stdout=subprocess.DEVNULL, check=True, cwd=folder, env=whole)
         best = min(best, time.perf_counter() - start)
     return best
 
