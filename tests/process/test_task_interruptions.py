@@ -1,4 +1,4 @@
-"""What may happen while a program runs: aborts in every kind of wait, edited files, reverse run, a random changer."""
+"""What may happen while a program runs: aborts in every kind of wait, edited files, a random changer."""
 
 from __future__ import annotations
 
@@ -87,23 +87,6 @@ def test_a_program_that_is_edited_or_deleted_runs_on_as_it_was_and_is_read_anew_
     path.write_text("G21 G90 F6000\nG1 X-5\nM2\n")
     assert desk.do(desk.command.auto, linuxcnc.AUTO_RUN, 0) == DONE, desk.texts
     assert x(desk) == -5.0
-
-
-def test_a_paused_program_runs_back_along_its_path_and_forward_again(desk):
-    desk.program("G21 G90 G61 F600\nG1 X20\nG1 X160\nM2\n")
-    desk.run()
-    desk.until(lambda s: s.position[0] > 22.0, "the second line")
-    desk.command.auto(linuxcnc.AUTO_PAUSE)
-    desk.until(lambda s: s.current_vel == 0.0, "the hold")
-    held = x(desk)
-    desk.command.auto(linuxcnc.AUTO_REVERSE)
-    desk.command.auto(linuxcnc.AUTO_RESUME)
-    desk.until(lambda s: s.position[0] < held - 1.0, "the way back")
-    desk.command.auto(linuxcnc.AUTO_PAUSE)
-    desk.until(lambda s: s.current_vel == 0.0, "the second hold")
-    desk.command.auto(linuxcnc.AUTO_FORWARD)
-    assert desk.do(desk.command.auto, linuxcnc.AUTO_RESUME) == DONE, desk.texts
-    assert x(desk) == 160.0
 
 
 @pytest.mark.parametrize(
