@@ -54,3 +54,38 @@ declare("sim_home_switch", "Home switch and index pulse for simulated joints", s
     pin_io(BIT, "index-enable", "cleared after the delay; mostly joint.N.index-enable"),
     pin_in(FLOAT, "index-delay-ms", "ms", 10.0),
 ], {"": <size_t>&sim_home_switch})
+
+
+cdef enum:
+    KEYS = 64
+
+cdef struct SimMatrixKb:
+    hal_pin out
+    hal_pin button_c00_r[8]
+    hal_pin button_c01_r[8]
+    hal_pin button_c02_r[8]
+    hal_pin button_c03_r[8]
+    hal_pin button_c04_r[8]
+    hal_pin button_c05_r[8]
+    hal_pin button_c06_r[8]
+    hal_pin button_c07_r[8]
+    uint8_t pressed[KEYS]
+
+cdef void sim_matrix_kb(SimMatrixKb* s, long period) noexcept nogil:
+    """One event a period: 0xC0 (pressed) or 0x80 (let go) + 8 row + column; between events 0x40 while a key is held."""
+    cdef hal_pin* button = s.button_c00_r
+    cdef uint32_t code = 0
+    cdef int i
+    for i in range(KEYS):
+        if (at(button[i]).b != 0) != (s.pressed[i] != 0):
+            s.pressed[i] = not s.pressed[i]
+            at(s.out).u = (0xC0 if s.pressed[i] else 0x80) + 8 * (i % 8) + i // 8
+            return
+        if s.pressed[i]:
+            code = 0x40
+    at(s.out).u = code
+
+declare("sim_matrix_kb", "Simulated matrix keyboard", sizeof(SimMatrixKb), [
+    pin_out(U32, "out", "code of a key: 0xC0 pressed, 0x80 let go, + 8 row + column"),
+    *(pin_in(BIT, f"button.c0{column}.r{{:02}}", count=8) for column in range(8)),
+], {"": <size_t>&sim_matrix_kb})

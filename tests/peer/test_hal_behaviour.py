@@ -269,6 +269,10 @@ CASES = {
         "b:charge-pump.out b:charge-pump.out-2 b:charge-pump.out-4",
         lambda chance: ([i % 23 > 2] for i in range(SAMPLES)),
     ),
+    "sim_matrix_kb": Case(
+        "sim_matrix_kb", "sim-matrix-kb.0", " ".join(f"b:sim-matrix-kb.0.button.c0{i}.r0{7 - i}" for i in range(8)),
+        "u:sim-matrix-kb.0.out", lambda chance: ([i // 5 % 17 == 2 * key for key in range(8)] for i in range(SAMPLES)),
+    ),
     "histobins": Case(
         "histobins", "histobins.0", "f:histobins.0.input s:histobins.0.index b:histobins.0.reset",
         "s:histobins.0.check f:histobins.0.binvalue f:histobins.0.pextra f:histobins.0.nextra "
