@@ -28,6 +28,7 @@ cdef enum:
 
 cdef double NO_WAY = 1e-13       # u
 cdef double SAME_SPEED = 1e-12   # relative
+cdef double STANDING = 1e-24     # w below which braking has come to rest: the rest is rounding
 cdef double ROUNDING = 4e-16     # of u, relative to the length of its span
 cdef double HARDEST = 1.0 + 1e-8 # times the limit: braking onto a point, to within rounding
 
@@ -198,6 +199,8 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
         if tp.w == 0.0 and phase.acceleration <= 0.0:
             return
         end_w = fmax(0.0, tp.w + 2.0 * phase.acceleration * phase.way)
+        if phase.acceleration < 0.0 and end_w < STANDING:
+            end_w = 0.0
         v = sqrt(tp.w)
         time = 2.0 * phase.way / (v + sqrt(end_w))
         if time <= left:

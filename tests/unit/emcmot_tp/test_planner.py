@@ -210,6 +210,17 @@ def test_pause_comes_to_rest_on_the_path_and_resume_goes_on():
     program.check(np.concatenate([first, rest, program.run()]), 0.01)
 
 
+def test_a_pause_ends_in_rest_to_the_last_bit_whatever_the_acceleration():
+    for k in range(300):
+        program = Program()
+        program.planner.set_limits(0, 200.0, 1000.0 - 3.1 * k)
+        program.line(20, vel=10.0).line(160, vel=10.0)
+        program.planner.step(50 + 11 * k)
+        program.planner.pause()
+        program.planner.step(200)
+        assert program.planner.reverse(True), k  # which is taken at rest only
+
+
 def test_abort_comes_to_rest_on_the_path_and_drops_the_queue():
     program = square(Program(tolerance=0.01))
     positions = program.planner.step(250)
