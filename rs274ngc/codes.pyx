@@ -199,15 +199,21 @@ UNUSED = (
 
 cdef unsigned int CHECKED = mask_of("DEHIJKLPQR$")
 cdef int SIDE_OFF = CANON_SIDE_OFF
+cdef str IDLE_AXES = "Cannot use axis values without a g code that uses them"
 
 
 # --- What a line means as a whole
+
+cdef bint axes_taken(const Block* b) noexcept:
+    """Whether a code other than the motion uses the axis words."""
+    return (b.g[0] >= 0 and g_code[b.g[0]].flags & AXES_TAKEN) or (b.g[8] >= 0 and g_code[b.g[8]].flags & AXES_TAKEN)
+
 
 cdef int enhance(State s, Block* b) except -1:
     """Find the motion of a line: its own, or the modal one if there is something to move."""
     cdef bint axes = (b.words & (M_AXES | M_POLAR)) != 0
     cdef bint taken_by_0 = b.g[0] >= 0 and g_code[b.g[0]].flags & AXES_TAKEN
-    cdef bint taken = taken_by_0 or (b.g[8] >= 0 and g_code[b.g[8]].flags & AXES_TAKEN)
+    cdef bint taken = axes_taken(b)
     b.motion = -1
     if b.g[1] >= 0:
         if b.g[1] == 800:
@@ -222,8 +228,8 @@ cdef int enhance(State s, Block* b) except -1:
     elif taken:
         pass
     elif axes:
-        if s.motion < 0 or s.motion == 800:
-            return fail(s, "Cannot use axis values without a g code that uses them")
+        if s.motion == 800:
+            return fail(s, IDLE_AXES)
         b.motion = s.motion
     elif b.words & M_IJK and (s.motion == 20 or s.motion == 30):
         b.motion = s.motion
@@ -267,6 +273,8 @@ cdef int check(State s, Block* b) except -1:
         for group in range(M_GROUPS):
             if b.m[group] >= 0 and m_code[b.m[group]].check != NULL:
                 m_code[b.m[group]].check(s, b, b.m[group])
+    if b.motion < 0 and s.motion < 0 and b.g[1] < 0 and b.words & M_AXES and not axes_taken(b):
+        return fail(s, IDLE_AXES)
     return 0
 
 

@@ -13,11 +13,12 @@ from rs274ngc.state cimport PARAMETERS, State
 DEBUG_PARAMETER = 5599      # 0: DEBUG is silent
 
 ACTIVE = re.compile(r"[ \t]*(msg|debug|print|log|logopen|logappend|logclose|probeopen|probeclose)(?:,|(?=[ )])|$)(.*)", re.I | re.S)
+DIGITS_MAX = 30     # a number this long is not shown
 FIELD = re.compile(r"#<([^>]*)>|#(\d+)|%(d|f|\.\df)")
 
 
 def expand(State s, str text):
-    """``text`` with parameters replaced by their values; one that does not exist shows as ``######``."""
+    """``text`` with parameters replaced by their values; one that does not exist, or is too long, shows as ``######``."""
     decimals = "6"
 
     def field(match):
@@ -35,7 +36,8 @@ def expand(State s, str text):
             if not 0 < int(number) < PARAMETERS:
                 return "######"
             value = s.params[<int>int(number)] if not 5420 <= int(number) <= 5428 else s.pos[<int>int(number) - 5420]
-        return f"{value:.{decimals}f}"
+        shown = f"{value:.{decimals}f}"
+        return shown if len(shown) < DIGITS_MAX else "######"
 
     return FIELD.sub(field, text)
 

@@ -355,6 +355,8 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
     cdef double ou = programmed(s, p.u), ov = programmed(s, p.v), du, dv, length, alpha, nu, nv
     cdef double[9] start
     cdef Corner c
+    cdef Move last
+    cdef bint around        # the last move was an arc with the tool outside
     memcpy(start, s.pos, sizeof(start))
     start[0], start[1], start[2] = s.comp_x, s.comp_y, s.comp_z
     memcpy(move.end, end, sizeof(move.end))
@@ -366,7 +368,9 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
         alpha = atan2(dv, du) + side * M_PI / 2.0
         nu, nv = r * cos(alpha), r * sin(alpha)
     if not s.comp_first and length > 0.0:
-        c = corner(s, p, ou, ov, nu, nv, M_PI + CORNER_TOLERANCE)
+        last = planar(p)
+        around = last is not None and last.kind == ARC and not within(s, last.turns)
+        c = corner(s, p, ou, ov, nu, nv, M_PI + (-CORNER_TOLERANCE if around else CORNER_TOLERANCE))
         if inside(c):
             meet_line(s, p, c, du, dv)
         else:
@@ -432,7 +436,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         outside(s, p, c, ARC)
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
     move.end[p.u], move.end[p.v] = eu, ev
-    if s.comp_first:
+    if s.comp_first or not inside(c):
         ou, ov = move.su, move.sv
     move.full = sweep(ou - move.cu, ov - move.cv, eu - move.cu, ev - move.cv, move.turns)
     return done(s, p, move, end)

@@ -61,7 +61,7 @@ def both(program: Path, folder: Path) -> tuple[subprocess.CompletedProcess[str],
         results.append(
             subprocess.run(
                 [*command, "-t", str(tools), "-v", str(parameters), "-g", str(program)],
-                env=dict(os.environ, PYTHONPATH=str(ROOT)),
+                env=dict(os.environ, PYTHONPATH=str(ROOT), HOME=str(folder)),     # the peer's tool data is a file there
                 cwd=folder,
                 capture_output=True,
                 text=True,
