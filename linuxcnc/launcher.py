@@ -62,6 +62,12 @@ def _launch(options: argparse.Namespace) -> int:
     from linuxcnc.program import ProgramError, run_program
     from nml.errors import PyemcError
 
+    held: list[str] = []
+
+    def report(line: str) -> None:
+        """Pass a line on; what task logs while we play the operator waits, for it may be the reason of the end."""
+        (held.append if options.run is not None and line.startswith("task: ") else to_stderr)(line)
+
     try:
         ini = _ini_file(options)
         if options.check:
@@ -74,16 +80,20 @@ def _launch(options: argparse.Namespace) -> int:
             lastused.remember(ini)
         for number in END_SIGNALS:
             signal.signal(number, _stop)
-        with Machine(configuration, to_stderr, options.talk) as machine:
+        with Machine(configuration, report, options.talk) as machine:
             machine.start()
             if options.run is not None:
                 print(run_program(machine.check, options.run.resolve()), flush=True)
                 return 0
             return _follow_display(machine)
     except (PyemcError, ProgramError, error) as reason:
+        held[:] = [line for line in held if line != f"task: {reason}"]
         if str(reason):
-            print(reason, file=sys.stderr)
+            held.append(str(reason))
         return 1
+    finally:
+        for line in held:
+            to_stderr(line)
 
 
 def _ini_file(options: argparse.Namespace) -> Path:
