@@ -58,10 +58,9 @@ cdef int straight(State s, Block* b, int code) except -1:
         if s.feed_mode == 930:
             if not has(b, W_F):
                 return fail(s, "F word missing with inverse time g1 move")
-        elif s.feed_mode == 940:
-            if s.feed == 0.0:
-                return fail(s, "Cannot do g1 with zero feed rate")
-        elif s.speed[s.active_spindle] == 0.0:
+        elif s.feed == 0.0:
+            return fail(s, "Cannot do g1 with zero feed rate")
+        elif s.feed_mode == 950 and s.speed[s.active_spindle] == 0.0:
             return fail(s, "Cannot feed with zero spindle speed in feed per rev mode")
     s.motion = code
     find_end(s, b, end)

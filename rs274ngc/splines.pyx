@@ -31,11 +31,10 @@ cdef int check_spline(State s, Block* b, double* end, str no_feed="Cannot make a
 
 
 cdef int send(State s, list points, int order, const double* end) except -1:
-    """One spline; it ends at ``end``."""
+    """One spline; it ends at ``end`` and leaves the motion mode as it was."""
     s.canon.nurbs_feed(s.line, points, order)
     memcpy(s.pos, end, sizeof(s.pos))
     s.comp_x, s.comp_y = end[0], end[1]
-    s.motion = -1
     return 0
 
 
@@ -96,4 +95,5 @@ cdef int nurbs_end(State s, Block* b, int code) except -1:
     memcpy(end, s.pos, sizeof(end))
     last = s.nurbs_points[len(s.nurbs_points) - 1]
     end[0], end[1] = last[0], last[1]
+    s.motion = -1
     return send(s, s.nurbs_points, order, end)
