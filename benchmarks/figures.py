@@ -163,7 +163,7 @@ def measure_stock(user: str | None) -> dict:
         environment["HOME"] = os.path.expanduser(f"~{user}")
     results = run_machine(command, environment)
     with tempfile.TemporaryDirectory() as folder:
-        results["rs274"] = time_rs274([STOCK["rs274"]], Path(folder), environment)
+        results["rs274"] = time_rs274([STOCK["rs274"]], Path(folder), environment | {"HOME": folder})
     return results
 
 
