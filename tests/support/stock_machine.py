@@ -96,7 +96,7 @@ ip link set lo up && mount -t tmpfs tmpfs /tmp || exit 77
 mkdir -p "$4" && mount --bind "$1/source" "$4" || exit 77  # the checkout may lie below /tmp
 cd "$1"
 export HOME="$1" USER={user} PATH=/usr/bin:/bin:/usr/sbin:/sbin
-su {user} -s /bin/sh -c 'exec linuxcnc machine.ini' > machine.log 2>&1 &
+su {user} -s /bin/sh -c 'HOME=$PWD exec linuxcnc machine.ini' > machine.log 2>&1 &
 "$2" "$3" > client.log 2>&1
 status=$?
 echo over > over
