@@ -17,7 +17,7 @@ def start_time(pid: int) -> int:
 
 def alive(pid: int, start: int) -> bool:
     """Whether the process that had number ``pid`` and began at ``start`` still runs."""
-    return pid > 0 and start_time(pid) == start
+    return pid > 0 and start > 0 and start_time(pid) == start
 
 
 def own_identity() -> tuple[int, int]:
