@@ -57,11 +57,13 @@ def report(error: InterpError, stack: bool) -> None:
 
 def show_figures(options: argparse.Namespace) -> int:
     """``--stats`` and ``--json``."""
-    from rs274ngc import stats
+    from rs274ngc import preview, stats
 
-    tools = tooltable.load(options.tools) if options.tools else tooltable.DEFAULT
-    canon = stats.geometry(options.input, read_ini(options.ini) if options.ini else None, tools=tools)
-    values = stats.figures(canon)
+    machine: dict[str, Any] = {"tools": tooltable.load(options.tools)} if options.tools else {}
+    result = preview.load(options.input, read_ini(options.ini) if options.ini else None, **machine)
+    if result.error is not None:
+        raise result.error
+    values = stats.figures(result)
     print(json.dumps(values) if options.json else stats.text(values))
     return 0
 

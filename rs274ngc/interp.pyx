@@ -391,14 +391,19 @@ cdef class Interpreter:
         except InterpError as error:
             raise self.placed(error)
 
-    def run_file(self, stop_on_error=True, on_error=None):
-        """Read and execute until the program is over; ``on_error(InterpError)`` is told, and so may go on."""
+    def run_file(self, stop_on_error=True, on_error=None, on_progress=None):
+        """Read and execute until the program is over; ``on_error(InterpError)`` is told, and so may go on.
+
+        ``on_progress(share read, 0 to 1)`` is called every thousand lines; an exception from it ends the run.
+        """
         cdef int code
         cdef unsigned int count = 0
         while True:
             count += 1
             if not count & 0x3FF:
                 check_signals()
+                if on_progress is not None:
+                    on_progress(self.share_read)
             try:
                 code = self.read_line()
                 if code == ENDFILE:
@@ -452,6 +457,15 @@ cdef class Interpreter:
     def line(self):
         """Line of the file that was read last."""
         return self.state.line
+
+    @property
+    def share_read(self):
+        """How much of the program file was read, 0 to 1; where a subroutine is called, up to the call."""
+        cdef Frame main = self.state.frames[0]
+        source = self.flow.source if self.call_level == 0 else main.source
+        if source is None:
+            return 1.0
+        return min(1.0, (source.position if self.call_level == 0 else main.position) / max(1, source.bytes))
 
     @property
     def file(self):

@@ -6,7 +6,9 @@ import os
 from typing import Any
 
 from nml.errors import ConfigError
+from rs274ngc.canon import AXES
 
+INCHES_OF = {"inch", "in", "imperial"}
 TRUE = {"1", "yes", "true", "on", "y", "t"}
 
 
@@ -29,13 +31,25 @@ def flag(ini: Any, section: str, key: str, default: bool = False) -> bool:
 
 def folder_of(ini: Any) -> str:
     """The folder that relative paths of the INI file begin in."""
-    path = getattr(ini, "path", None) or getattr(ini, "filename", None)
-    return os.path.dirname(os.path.abspath(str(path))) if path else os.getcwd()
+    path = getattr(ini, "file", None)
+    return os.path.dirname(os.path.abspath(path)) if path else os.getcwd()
 
 
 def expanded(base: str, path: str) -> str:
     """A path of the INI file as an absolute one."""
     return os.path.join(base, os.path.expanduser(path.strip()))
+
+
+def units_per_mm(ini: Any) -> float:
+    """Machine length units in a millimetre, by [TRAJ]LINEAR_UNITS."""
+    text = (ini.find("TRAJ", "LINEAR_UNITS") or "mm").strip().lower()
+    return 1.0 / 25.4 if text in INCHES_OF else 1.0
+
+
+def axis_mask(ini: Any) -> int:
+    """Which axes the machine has, by [TRAJ]COORDINATES: bit 0 X to bit 8 W; all when it is not there."""
+    letters = {letter for letter in (ini.find("TRAJ", "COORDINATES") or AXES).upper() if letter in AXES}
+    return sum(1 << AXES.index(letter) for letter in letters)
 
 
 def apply_settings(interp: Any, ini: Any) -> None:

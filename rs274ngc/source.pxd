@@ -11,6 +11,7 @@ cdef class Source:
     cdef int size               # bytes in the buffer
     cdef public long position   # offset of the next line
     cdef public int line        # number of lines before it
+    cdef readonly long bytes    # size of the file
     cdef char[CHUNK] buffer
     cdef int next_line(self, char* out, int capacity) except -3
     cdef bint fill(self, long position) except -1

@@ -18,6 +18,7 @@ cdef class Source:
             self.fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
             if os.path.isdir(path):
                 raise IsADirectoryError(path)
+            self.bytes = os.fstat(self.fd).st_size
         except OSError:
             raise InterpError(f"Unable to open file <{path}>") from None
 

@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 
 from rs274ngc.canon import AXES
-from rs274ngc.geometry import ARC, FEED, PROBE, RAPID, GeometryCanon
-from rs274ngc.interp import Interpreter
+from rs274ngc.geometry import ARC, FEED, PROBE, RAPID
+from rs274ngc.preview import Preview
 
 KIND_NAMES = {RAPID: "rapid", FEED: "feed", ARC: "arc", PROBE: "probe"}
 
 
-def geometry(path: str | os.PathLike[str], ini: Any = None, **machine: Any) -> GeometryCanon:
-    """Run a program on a geometry canon; InterpError where it is wrong."""
-    canon = GeometryCanon(**machine)
-    interp = Interpreter(canon, ini)
-    interp.parameter_file = None
-    interp.init()
-    interp.open(path)
-    interp.run_file()
-    interp.close()
-    return canon
-
-
-def figures(canon: GeometryCanon, rapid: float = 10000.0) -> dict[str, Any]:
+def figures(result: Preview, rapid: float = 10000.0) -> dict[str, Any]:
     """The figures: mm, seconds. Time is path over feed, without acceleration; ``rapid``: mm a minute."""
-    table = canon.table()
+    table = result.rows
     ends, kinds = table["end"], table["kind"]
     starts = np.vstack([np.zeros((1, 9)), ends[:-1]]) if len(ends) else ends
     lengths = np.linalg.norm(ends[:, :3] - starts[:, :3], axis=1)
@@ -42,8 +29,8 @@ def figures(canon: GeometryCanon, rapid: float = 10000.0) -> dict[str, Any]:
             if len(ends) and np.ptp(ends[:, k]) > 0.0
         },
         "distance_mm": {name: float(lengths[kinds == kind].sum()) for kind, name in KIND_NAMES.items()},
-        "time_s": float(seconds.sum() + canon.dwell_time),
-        "tools": canon.tools_used,
+        "time_s": float(seconds.sum() + result.dwell_s),
+        "tools": result.tools,
     }
 
 

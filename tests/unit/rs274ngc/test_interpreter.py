@@ -6,9 +6,8 @@ from pathlib import Path
 import pytest
 
 from nml.errors import ConfigError, InterpError
-from rs274ngc import stats, varfile
+from rs274ngc import varfile
 from rs274ngc.codes import TABLE
-from rs274ngc.geometry import ARC
 from rs274ngc.interp import INTERP_EXECUTE_FINISH, INTERP_EXIT, INTERP_OK, Interpreter
 from rs274ngc.offline import OfflineCanon
 from rs274ngc.reference import reference
@@ -119,16 +118,6 @@ def test_a_parameter_file_out_of_order_is_refused(tmp_path):
     path.write_text("5220 1\n5161 0\n")
     with pytest.raises(ConfigError, match=r"wrong.var:2: Parameter file out of order"):
         varfile.load(path, 5603)
-
-
-def test_geometry_follows_an_arc_within_the_chord_error(tmp_path):
-    program = tmp_path / "arc.ngc"
-    program.write_text("g21 f100\ng0 x10\ng3 x-10 i-10\nm2\n")
-    canon = stats.geometry(program, chord_error=0.01)
-    arc = canon.moves[canon.kinds == ARC]
-    assert abs((arc[:, 0] ** 2 + arc[:, 1] ** 2) ** 0.5 - 10.0).max() < 1e-9
-    assert stats.figures(canon)["distance_mm"]["arc"] == pytest.approx(31.4159, abs=0.02)
-    assert set(canon.lines[canon.kinds == ARC]) == {3}
 
 
 def test_every_code_has_a_summary():
