@@ -209,6 +209,8 @@ cdef struct Siggen:
     hal_pin square, sawtooth, triangle, sine, cosine, clock, frequency, amplitude, offset, reset
     double phase  # of a period, 0 to 1
 
+cdef double TURN = 2.0 * 3.1415927  # to these digits, as in LinuxCNC: its samples are compared in print
+
 cdef void siggen(Siggen* s, long period) noexcept nogil:
     cdef double amplitude = at(s.amplitude).f, offset = at(s.offset).f
     cdef double ramp, limit = 0.5 / (period * 1e-9)
@@ -225,8 +227,8 @@ cdef void siggen(Siggen* s, long period) noexcept nogil:
     at(s.square).f = (amplitude if s.phase > 0.5 else -amplitude) + offset
     at(s.sawtooth).f = ramp * amplitude + offset
     at(s.triangle).f = (2.0 * fabs(ramp) - 1.0) * amplitude + offset
-    at(s.sine).f = sin(2.0 * M_PI * s.phase) * amplitude + offset
-    at(s.cosine).f = cos(2.0 * M_PI * s.phase) * amplitude + offset
+    at(s.sine).f = sin(TURN * s.phase) * amplitude + offset
+    at(s.cosine).f = cos(TURN * s.phase) * amplitude + offset
 
 declare("siggen", "Signal generator", sizeof(Siggen), [
     pin_out(FLOAT, "square", "positive while triangle and cosine rise"),

@@ -1,6 +1,6 @@
 """Components that limit or smooth a value over time. See ``declare.py``."""
 
-from libc.math cimport ceil, fabs, sqrt
+from libc.math cimport fabs, floor
 from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t
 
 from hal.cell cimport hal_at as at, hal_pin
@@ -41,60 +41,82 @@ declare("limit2", "Limit a value and how fast it changes", sizeof(Limit2), [
 cdef struct Limit3:
     hal_pin in_, enable, out, load, min_, max_, maxv, maxa, smooth_steps
     double v  # per s, of the last period
-    double old_target
-    uint8_t started
+    double old_in
+    uint32_t ending  # halving periods that are left
 
-cdef double approach(double distance, double maxa, double dt) noexcept nogil:
-    """The highest velocity of this period after which braking by `maxa` in whole periods still ends at the distance.
+# A way with bounded acceleration, in periods: velocities differ by `step`, the most that one period allows.
+cdef struct Way:
+    double v  # per s, of the last period
+    double rest  # way to the goal, per s: what one period would need
+    double step  # per s
+    double fastest  # per s, towards the goal
 
-    Of `n` periods the first goes at v and each later one slower by `step`: n v - step n (n - 1) / 2 periods' ways in all.
-    """
-    cdef double step = maxa * dt
-    cdef double ways = fabs(distance) / dt
-    cdef double n, v
-    if ways <= step:
-        v = ways
-    else:
-        n = ceil(0.5 * (sqrt(1.0 + 8.0 * ways / step) - 1.0) - 1e-9)
-        v = ways / n + 0.5 * step * (n - 1.0)
-    return -v if distance < 0.0 else v
+cdef bint can_brake(double v, double rest, double step) noexcept nogil:
+    """Whether a period at `v`, then slower by `step` each period, ends before the goal."""
+    cdef double n
+    if v <= 0.0:
+        return True
+    n = floor(v / step * (1.0 + 1e-12))
+    return v + n * v - step * 0.5 * n * (n + 1.0) <= rest + 1e-9 * fabs(rest)
+
+cdef double next_velocity(Way way) noexcept nogil:
+    """Full acceleration as long as braking still ends at the goal, then full braking; the last period lands on it."""
+    cdef double faster
+    if way.rest < 0.0:
+        return -next_velocity(Way(-way.v, -way.rest, way.step, way.fastest))
+    if fabs(way.rest - way.v) <= way.step and way.rest <= way.step:
+        return way.rest
+    faster = min(way.v + way.step, max(way.fastest, way.v - way.step))
+    return faster if can_brake(faster, way.rest, way.step) else way.v - way.step
+
+cdef double ending_velocity(Limit3* s, Way way) noexcept nogil:
+    """As `next_velocity`, but the last of more than two smooth steps halve the velocity each, where that arrives."""
+    cdef double v, shares
+    if s.ending == 0 and at(s.smooth_steps).u > 2:
+        v = fabs(way.rest) / (2.0 - 0.125)
+        if way.v * way.rest > 0.0 and fabs(v - fabs(way.v)) <= way.step and way.step < v <= 2.0 * way.step:
+            s.ending = 4
+    if s.ending > 0:
+        s.ending -= 1
+        shares = 2.0 - 1.0 / (1 << s.ending)
+        v = way.rest / shares
+        if fabs(v - way.v) <= way.step * (1.0 + 1e-9):
+            return v
+        s.ending = 0
+    return next_velocity(way)
 
 cdef double limited_velocity(Limit3* s, double target, double dt) noexcept nogil:
     """Velocity of this period: catch the target, moving or not, and be able to stop at min and max."""
-    cdef double out = at(s.out).f, maxv = at(s.maxv).f, maxa = at(s.maxa).f
-    cdef double target_v = (target - s.old_target) / dt
-    cdef double v, rest
-    if fabs(target_v) > maxv:
-        target_v = 0.0  # a jump: come to rest there
-    rest = target - out - target_v * dt
-    v = target_v + approach(rest, maxa, dt)
-    if fabs(v) > fabs(s.v) and at(s.smooth_steps).u > 0:
-        v = clamped(v, -max(fabs(s.v), fabs(target_v) + fabs(rest) / (at(s.smooth_steps).u * dt)),
-                    max(fabs(s.v), fabs(target_v) + fabs(rest) / (at(s.smooth_steps).u * dt)))
-    v = clamped(v, max(-maxv, approach(at(s.min_).f - out, maxa, dt)), min(maxv, approach(at(s.max_).f - out, maxa, dt)))
-    return clamped(v, s.v - maxa * dt, s.v + maxa * dt)
+    cdef double out = at(s.out).f, maxv = at(s.maxv).f, step = at(s.maxa).f * dt
+    cdef double target_v = (target - s.old_in) / dt
+    cdef double rest = (s.old_in - out) / dt
+    cdef double v, lowest, highest
+    if fabs(target_v) > maxv:  # a jump: come to rest there
+        target_v = 0.0
+        rest = (target - out) / dt
+    v = target_v + ending_velocity(s, Way(s.v - target_v, rest, step, maxv - target_v if rest > 0.0 else maxv + target_v))
+    highest = next_velocity(Way(s.v, (at(s.max_).f - out) / dt, step, maxv))
+    lowest = next_velocity(Way(s.v, (at(s.min_).f - out) / dt, step, maxv))
+    return clamped(clamped(v, lowest, highest), s.v - step, s.v + step)
 
 cdef void limit3(Limit3* s, long period) noexcept nogil:
     cdef double dt = period * 1e-9
-    cdef double target = clamped(at(s.in_).f if at(s.enable).b else 0.0, at(s.min_).f, at(s.max_).f)
-    if not s.started:
-        s.started = 1
-        s.old_target = target
+    cdef double target = at(s.in_).f if at(s.enable).b else 0.0
+    cdef double out
     if at(s.load).b:
         s.v = 0.0
-        at(s.out).f = target
+        at(s.out).f = clamped(target, at(s.min_).f, at(s.max_).f)
     else:
         s.v = limited_velocity(s, target, dt)
-        at(s.out).f += s.v * dt
-        if fabs(at(s.out).f - target) < 1e-12 * fabs(target):
-            at(s.out).f = target
-    s.old_target = target
+        out = at(s.out).f + s.v * dt
+        at(s.out).f = target if fabs(out - target) < 1e-12 * fabs(target) else out
+    s.old_in = target
 
 declare("limit3", "Limit a value, its velocity and its acceleration", sizeof(Limit3), [
     pin_in(FLOAT, "in"), pin_in(BIT, "enable", "false: go to 0, within the limits", True), pin_out(FLOAT, "out"),
     pin_in(BIT, "load", "set out to in at once"), pin_in(FLOAT, "min", "", -1e20), pin_in(FLOAT, "max", "", 1e20),
     pin_in(FLOAT, "maxv", "per s", 1e20), pin_in(FLOAT, "maxa", "per s^2", 1e20),
-    pin_in(U32, "smooth-steps", "periods before the target in which out accelerates no more", 2),
+    pin_in(U32, "smooth-steps", "more than 2: the last periods before the target halve the velocity", 2),
 ], {"": <size_t>&limit3})
 
 
