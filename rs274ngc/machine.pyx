@@ -7,7 +7,7 @@ from rs274ngc.canon import (
     CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_PLANE_XY, CANON_SIDE_OFF, CANON_STOPPED,
 )
 from rs274ngc.compensation cimport flush
-from rs274ngc.modes cimport read_spindle
+from rs274ngc.modes cimport read_spindle, read_spindles
 from rs274ngc.offsets cimport change_origin
 from rs274ngc.state cimport EXIT, FINISH, WAIT_INPUT, State, fail, fail_word
 
@@ -19,10 +19,9 @@ cdef int OUTPUTS_MAX = 63       # highest number of a digital or analog input or
 # --- Spindles and coolant
 
 cdef int spindle(State s, Block* b, int code) except -1:
-    """M3, M4, M5: the spindle of the $ word, or all of them"""
-    cdef int n, first = 0, last = s.spindles - 1
-    if has(b, W_DOLLAR) and b.value[W_DOLLAR] != -1.0:
-        first = last = read_spindle(s, b, f"Spindle ($) number out of range in M{code} Command")
+    """M3, M4, M5"""
+    cdef int n, first, last
+    read_spindles(s, b, f"Spindle ($) number out of range in M{code} Command", &first, &last)
     for n in range(first, last + 1):
         if code == 3:
             s.canon.start_spindle_clockwise(n, True)
@@ -96,7 +95,7 @@ cdef int feed_override(State s, bint on) except -1:
 
 cdef int overrides(State s, Block* b, int code) except -1:
     """M48, M49 both overrides; M50 feed, M51 speed, M52 adaptive feed, M53 feed hold, with P0 off"""
-    cdef int n
+    cdef int n, first, last
     cdef bint on = value_or(b, W_P, 1.0) != 0.0
     if s.comp_side != SIDE_OFF:
         what = "disable" if code == 49 or not on else "enable"
@@ -108,7 +107,11 @@ cdef int overrides(State s, Block* b, int code) except -1:
     elif code == 50:
         feed_override(s, on)
     elif code == 51:
-        speed_override(s, read_spindle(s, b, "Invalid spindle ($) number in M51 command"), on)
+        first, last = 0, s.spindles - 1
+        if has(b, W_DOLLAR):
+            first = last = read_spindle(s, b, "Invalid spindle ($) number in M51 command")
+        for n in range(first, last + 1):
+            speed_override(s, n, on)
     elif code == 52:
         if on:
             s.canon.enable_adaptive_feed()

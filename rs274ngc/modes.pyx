@@ -146,15 +146,20 @@ cdef int set_spindle_mode(State s, Block* b, int code) except -1:
     return 0
 
 
+cdef int read_spindles(State s, Block* b, str message, int* first, int* last) except -1:
+    """The spindle of the $ word, spindle 0 without one, all of them with $-1."""
+    if has(b, W_DOLLAR) and b.value[W_DOLLAR] == -1.0:
+        first[0], last[0] = 0, s.spindles - 1
+    else:
+        first[0] = last[0] = read_spindle(s, b, message)
+    return 0
+
+
 cdef int set_speed(State s, Block* b) except -1:
-    """S: every spindle of the machine, or the one of the $ word"""
-    cdef int spindle
-    if has(b, W_DOLLAR):
-        spindle = read_spindle(s, b, "Invalid spindle ($) number in Spindle speed command")
-        s.speed[spindle] = b.value[W_S]
-        s.canon.set_spindle_speed(spindle, b.value[W_S])
-        return 0
-    for spindle in range(s.spindles):
+    """S"""
+    cdef int spindle, first, last
+    read_spindles(s, b, "Invalid spindle ($) number in Spindle speed command", &first, &last)
+    for spindle in range(first, last + 1):
         s.speed[spindle] = b.value[W_S]
         s.canon.set_spindle_speed(spindle, b.value[W_S])
     return 0

@@ -1,9 +1,9 @@
 """A program's moves as arrays, without a machine: for a display's tool path, plots and statistics.
 
-``load`` runs a program to its end (one that waits or probes does not wait here) and returns its moves, all at once or in
-pieces while it goes on. ``python -m rs274ngc.preview PROGRAM -i INI`` does the same in a process of its own and writes
-the pieces to its standard output, so that a server goes on serving meanwhile: frames of one line of JSON, followed by
-``bytes`` bytes of rows (``geometry.ROW``, little-endian):
+``load`` runs a program to its end (one that waits or probes does not wait here) and returns its moves, all at once or
+in pieces while it goes on. ``python -m rs274ngc.preview PROGRAM -i INI`` does the same in a process of its own and
+writes the pieces to its standard output, so that a server goes on serving meanwhile: frames of one line of JSON,
+followed by ``bytes`` bytes of rows (``geometry.ROW``, little-endian):
 
     {"frame": "rows", "rows": n, "bytes": n * row size, "done": share of the program read, 0 to 1}
     {"frame": "end", "bytes": 0, "moves": n, "tools": [...], "error": null or {"message", "file", "line", "column"}}

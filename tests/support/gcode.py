@@ -58,10 +58,12 @@ MACHINE = (
 class Generator:
     """Writes one program."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, spindles: int = 1) -> None:
         self.random = random.Random(seed)
+        self.spindles = spindles
         self.lines: list[str] = []
         self.labels = 100
+        self.subprograms: list[str] = []
 
     def number(self, low: float = -20.0, high: float = 20.0) -> str:
         value = round(self.random.uniform(low, high), 3)
@@ -135,19 +137,61 @@ class Generator:
         ]
 
     def threading(self) -> list[str]:
-        taper = self.random.choice(("", "", "e.5 l1", "e.3 l2", "e.4 l3", "q29.5", "h2 r1.5"))
+        taper = self.random.choice(("", "", "e.5 l1", "e.3 l2", "e.4 l3", "q29.5", "h2 r1.5", "h1 q30 e.2 l3 r2"))
         return [
-            "g18 g90 m3 s100",
+            self.random.choice(("g18", "g18", "g18 g7", "g17")) + " g90 m3 s100",
             f"g0 x{self.number(10, 12)} z{self.number(2, 4)}",
             self.random.choice(
                 (
-                    f"g76 p{self.number(0.5, 2)} z{self.number(-9, 0)} i-{self.random.uniform(0.5, 2):.3f}"
+                    f"g76 p{self.number(0.5, 2)} z{self.number(-9, 0)} i{self.random.choice('- ')}"
+                    f"{self.random.uniform(0.5, 2):.3f}"
                     f" j{self.random.uniform(0.1, 0.4):.3f} k{self.random.uniform(0.6, 2):.3f} {taper}",
                     f"g33 z{self.number()} k{self.number(0.5, 2)}",
                     f"g33.1 z{self.number()} k{self.number(0.5, 2)}",
                 )
             ),
-            "g17",
+            "g17 g8",
+        ]
+
+    def several_spindles(self) -> list[str]:
+        """Codes with a $ word; one spindle has only number 0."""
+        n = self.random.randrange(self.spindles)
+        return self.random.choice(
+            (
+                [f"m{self.random.choice((3, 4))} $-1 s{self.number(1, 99)}", f"m5 ${n}"],
+                [f"m3 ${n} s{self.number(1, 99)}", f"g33 z{self.number()} k.5 ${n}", f"g33.1 z{self.number()} k.5 ${n}"],
+                [f"s100 ${n}", f"m3 ${n}", "s20 $-1"],
+                [f"g96 d{self.number(100, 200)} s{self.number(1, 50)} ${n}", f"g97 s20 ${n}"],
+                [f"m51 p0 ${n or 1}" if self.spindles > 1 else "m51 p0", "m51 p1", f"m19 r{self.number(0, 360)} q2 p{self.random.randrange(3)} ${n}"],
+                [f"s{self.number(1, 99)} ${n}", f"m{self.random.choice((3, 4, 5))} ${self.random.choice((n, -1, 9))}"],
+            )
+        )
+
+    def other_planes(self) -> list[str]:
+        plane = self.random.choice(("g17.1", "g18.1", "g19.1"))
+        return [plane, *self.straight(), "g17"]
+
+    def subprogram(self) -> list[str]:
+        """M98 to a subprogram that stands after the end of the program."""
+        self.labels += 3
+        n = self.labels
+        self.subprograms += [f"o{n}", "g91", f"g1 {self.axes()} f50", "g90", *self.parameter(), "m99"]
+        return [f"m98 p{n}" + self.random.choice(("", " l2", " l1"))]
+
+    def names(self) -> list[str]:
+        """Named parameters, local and global, and the predefined ones."""
+        name = self.random.choice(("one", "two words", "Mixed_Case", "_glob", "_Glob two"))
+        known = self.random.choice(
+            ("_x", "_y", "_abs_z", "_feed", "_rpm", "_metric", "_motion_mode", "_plane", "_ccomp", "_coord_system",
+             "_tool_offset", "_current_tool", "_selected_tool", "_value", "_call_level", "_line", "_absolute",
+             "_spindle_on", "_spindle_cw", "_mist", "_flood", "_speed_override", "_feed_override", "_retract_r_plane",
+             "_current_pocket", "_selected_pocket", "_ijk_absolute_mode", "_lathe_diameter_mode", "_units_per_rev")
+        )  # fmt: skip
+        return [
+            f"#<{name}> = {self.number()}",
+            f"(debug, {name} %.3f#<{name}> %d#<{known}> %f#<{name.upper()}> #<none>)",
+            f"#<{name}>=[#<{name}>+1] g0 x[#<{name}>/2] f[#<_feed>+1]",
+            f"o{self.label()} if [exists[#<{name}>]]\n(print,#<{known}>)\no{self.labels} endif",
         ]
 
     def polar(self) -> list[str]:
@@ -284,6 +328,7 @@ class Generator:
         (straight, 8), (modal, 4), (arc, 4), (offsets, 4), (machine, 5), (cycle, 2), (polar, 1), (inverse, 1),
         (flow, 2), (parameter, 1), (compensation, 2), (threading, 1), (per_turn, 1), (spline, 1), (tables, 1),
         (expression, 2), (nested, 1), (saved, 1), (probing, 1), (absolute_centre, 1), (diameter, 1),
+        (several_spindles, 1), (other_planes, 1), (subprogram, 1), (names, 2),
     )  # fmt: skip
 
     def program(self, pieces: int = 25, mistake: bool = False) -> str:
@@ -294,4 +339,4 @@ class Generator:
             lines += self.random.choice(makers)(self)
             if mistake and self.random.random() < 0.1:
                 lines += self.soup() if self.random.random() < 0.7 else [self.random.choice(MISTAKES)]
-        return "\n".join([*lines, "m2", ""])
+        return "\n".join([*lines, "m2", *self.subprograms, ""])

@@ -1,0 +1,168 @@
+"""Many random programs through Debian's interpreter and ours: the recorded run, and the pieces of its test.
+
+    python -m tests.support.differential --programs 10000 --first 1 --report differences.txt
+
+Each seed makes one program; every third has wrong lines in it. A difference is reported with its seed and the first line
+that differs. ``KNOWN`` names the differences that docs/gcode-differences.md explains, by what they look like.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import redirect_stderr
+from dataclasses import dataclass
+from io import StringIO
+from itertools import zip_longest
+from pathlib import Path
+
+from rs274ngc import __main__ as rs274
+from tests.support.gcode import TOOLS, Generator
+
+PEER = Path("/usr/bin/rs274")
+TIMEOUT_S = 60
+SPINDLES = 3
+MACHINE = f"[TRAJ]\nSPINDLES={SPINDLES}\n[RS274NGC]\nPARAMETER_FILE=machine.var\n"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What an interpreter made of a program."""
+
+    calls: list[str]
+    refusal: tuple[str, str]  # the first error and the block it is about
+
+
+def calls(output: str) -> list[str]:
+    """Canonical calls without what is known to differ: see docs/gcode-differences.md."""
+    kept = []
+    for line in output.splitlines():
+        line = re.sub(r"^ *\d+ (?=N)", "", line)
+        if line.endswith(" START_CHANGE()"):
+            continue
+        line = re.sub(r"CHANGE_TOOL\(\d+\)", "CHANGE_TOOL()", line)
+        kept.append(re.sub(r"-(0\.0+)\b", r"\1", line))
+    return kept
+
+
+def refusal(errors: str) -> tuple[str, str]:
+    """The first error and the block it is about."""
+    lines = [line for line in errors.splitlines() if line and not line.startswith(("link (", "executing"))]
+    lines = [re.sub(r"^\S+:\d+(:\d+)?: ", "", line) for line in lines]
+    return (lines[0], lines[1].rstrip()) if len(lines) > 1 else ("", "")
+
+
+def prepare(folder: Path) -> None:
+    """The files that both read: a tool table, empty parameters, an INI file with several spindles."""
+    (folder / "test.tbl").write_text(TOOLS)
+    (folder / "machine.ini").write_text(MACHINE)
+    for name in ("machine.var", "none.var"):
+        (folder / name).write_text("")
+
+
+def options(spindles: bool) -> list[str]:
+    return ["-t", "test.tbl", *(["-i", "machine.ini"] if spindles else ["-v", "none.var"]), "-g"]
+
+
+def theirs(folder: Path, program: Path, spindles: bool = False) -> Outcome:
+    """Debian's interpreter."""
+    prepare(folder)
+    done = subprocess.run(
+        [str(PEER), *options(spindles), str(program)],
+        env=dict(os.environ, HOME=str(folder)),  # its tool data is a file there
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    return Outcome(calls(done.stdout), refusal(done.stderr))
+
+
+def ours(folder: Path, program: Path, spindles: bool = False) -> Outcome:
+    """Ours, in this process."""
+    prepare(folder)
+    errors, output, here = StringIO(), folder / "output", os.getcwd()
+    os.chdir(folder)
+    try:
+        with redirect_stderr(errors):
+            rs274.main([*options(spindles), str(program), str(output)])
+    finally:
+        os.chdir(here)
+    return Outcome(calls(output.read_text(errors="replace")), refusal(errors.getvalue()))
+
+
+def differing(one: Outcome, other: Outcome) -> tuple[str, str] | None:
+    """The first line of each in which they differ; None: they do not."""
+    for left, right in zip_longest([*one.calls, *one.refusal], [*other.calls, *other.refusal], fillvalue="(nothing)"):
+        if left != right:
+            return left, right
+    return None
+
+
+def write(seed: int, folder: Path) -> tuple[Path, bool]:
+    """The program of a seed, and whether it is for several spindles."""
+    spindles = seed % 4 == 1
+    program = folder / "program.ngc"
+    program.write_text(Generator(seed, SPINDLES if spindles else 1).program(mistake=seed % 3 == 0))
+    return program, spindles
+
+
+KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str]], ...] = tuple(
+    (name, re.compile(their_line), re.compile(our_line))
+    for name, their_line, our_line in (
+        ("axes of G5.2", "", "Splines may not have motion in Z, A, B, or C"),
+        ("number of spindles in the error", r"^num_spindles =", ""),
+    )
+)
+"""(name, what LinuxCNC's line looks like, what ours looks like) of the differences that are explained."""
+
+
+def explained(left: str, right: str, one: Outcome, other: Outcome) -> str:
+    """The name of a known difference, empty for an unknown one."""
+    left, right = "\n".join((left, *one.refusal)), "\n".join((right, *other.refusal))
+    for name, their_line, our_line in KNOWN:
+        if their_line.search(left) and our_line.search(right):
+            return name
+    return ""
+
+
+def run(seeds: range) -> Iterator[tuple[int, str, str, str]]:
+    """(seed, name of the known difference, their line, our line) of each program that differs."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for seed in seeds:
+            program, spindles = write(seed, folder)
+            try:
+                one, other = theirs(folder, program, spindles), ours(folder, program, spindles)
+            except subprocess.TimeoutExpired:
+                yield seed, "", "(never ends)", ""
+                continue
+            found = differing(one, other)
+            if found is not None:
+                yield seed, explained(*found, one, other), *found
+
+
+def main() -> int:
+    """Run them, tell what differs as it is found, sum up; 0: nothing unexplained."""
+    chosen = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    chosen.add_argument("--programs", type=int, default=10_000)
+    chosen.add_argument("--first", type=int, default=1, help="first seed")
+    arguments = chosen.parse_args()
+    reasons: Counter[str] = Counter()
+    for seed, reason, left, right in run(range(arguments.first, arguments.first + arguments.programs)):
+        reasons[reason or "unexplained"] += 1
+        print(f"seed {seed} {reason}\n  LinuxCNC {left}\n  here     {right}", flush=True)
+    print(f"{arguments.programs} programs, {reasons.total()} differ: {dict(reasons)}")
+    return 1 if reasons["unexplained"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
