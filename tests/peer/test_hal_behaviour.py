@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
 import random
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,12 +12,13 @@ import pytest
 
 from tests.peer.test_hal_peer import PEER, peer
 from tests.support.halsession import script
+from tests.support.shield import reason_to_skip
 
 pytestmark = [
     pytest.mark.peer,
     pytest.mark.process,
     pytest.mark.skipif(PEER is None, reason="/usr/bin/halrun (linuxcnc-uspace) is not installed"),
-    pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("unshare"), reason="shielding the peer needs root"),
+    pytest.mark.skipif(reason_to_skip() is not None, reason=reason_to_skip() or ""),
 ]
 
 SAMPLES = 400

@@ -12,13 +12,14 @@ from pathlib import Path
 import pytest
 
 from tests.support.halsession import script
+from tests.support.shield import NOBODY, SHIELD, reason_to_skip
 
 PEER = shutil.which("halrun", path="/usr/bin")
 pytestmark = [
     pytest.mark.peer,
     pytest.mark.process,
     pytest.mark.skipif(PEER is None, reason="/usr/bin/halrun (linuxcnc-uspace) is not installed"),
-    pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("unshare"), reason="shielding the peer needs root"),
+    pytest.mark.skipif(reason_to_skip() is not None, reason=reason_to_skip() or ""),
 ]
 
 COMPONENTS = """
@@ -41,15 +42,13 @@ IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)
 
 def peer(text: str, files: dict[str, str] | None = None) -> str:
     """What Debian's halrun prints for a HAL file, as an ordinary user in namespaces and a folder of its own."""
-    shield = ["unshare", "-i", "-p", "-n", "-f", "--mount-proc"]
     with tempfile.TemporaryDirectory(prefix="pyemc-peer-", dir="/var/tmp") as home:
         os.chmod(home, 0o777)
         path = Path(home, "peer.hal")
         for name, content in {path.name: text, **(files or {})}.items():
             Path(home, name).write_text(content)
         done = subprocess.run(
-            [*shield, "setpriv", "--reuid=65534", "--regid=65534", "--clear-groups",
-             "timeout", "60", PEER, "-k", "-f", str(path)],
+            [*SHIELD, *NOBODY, "timeout", "60", PEER, "-k", "-f", str(path)],
             capture_output=True, text=True, timeout=90, check=False, cwd=home,
             env={"HOME": home, "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
         )  # fmt: skip

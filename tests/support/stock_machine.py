@@ -7,7 +7,6 @@ the only program that can reach it.
 from __future__ import annotations
 
 import json
-import os
 import pwd
 import shutil
 import subprocess
@@ -18,6 +17,7 @@ from typing import Any
 
 import pytest
 
+from tests.support import shield
 from tests.support.nml_server import SOURCE, remote_text
 
 USER = next((name for name in ("lcnc", "nobody") if name in {entry.pw_name for entry in pwd.getpwall()}), None)
@@ -120,14 +120,9 @@ def reason_to_skip() -> str | None:
     """Why a stock machine cannot run here; None if it can."""
     if not Path("/usr/bin/milltask").exists():
         return "Debian's LinuxCNC is not installed"
-    if os.getuid() != 0 or USER is None:
-        return "needs root, to run LinuxCNC as another user in namespaces of its own"
-    probe = ["unshare", "--ipc", "--net", "--pid", "--fork", "--mount-proc", "ip", "link", "set", "lo", "up"]
-    try:
-        allowed = subprocess.run(probe, capture_output=True).returncode == 0
-    except OSError:
-        allowed = False
-    return None if allowed else "namespaces are not allowed here"
+    if USER is None:
+        return "there is no ordinary user to run LinuxCNC as"
+    return shield.reason_to_skip()
 
 
 _REASON = reason_to_skip()
@@ -139,7 +134,7 @@ def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]
     folder = Path(tempfile.mkdtemp(prefix="pyemc-stock-", dir="/var/tmp"))
     try:
         _prepare(folder, script, options)
-        command = ["unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
+        command = [*shield.SHIELD, "--mount", "--kill-child"]
         command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
         command += [str(SOURCE)]
         process = subprocess.run(command, timeout=seconds)
