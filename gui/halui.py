@@ -16,14 +16,14 @@ from typing import Any, Protocol
 
 import hal
 import linuxcnc
-from gui.halui_inputs import Button, Dial, Jog
+from gui.halui_inputs import Button, Dial, Jog, Step
 from gui.halui_panel import AXIS, JOINT, Panel
-from gui.rsh_values import relative
+from gui.rsh_values import in_program
 from nml import clock
 
 PERIOD = 0.02  # host seconds between looks at the pins
 LETTERS = "xyzabcuvw"
-OVERRIDE_STEP = 0.1  # override of one count until a .scale pin says else
+NO_LIMIT = float("inf")
 JOG_DEADBAND = 0.2  # of analog jog pins until the deadband pin says else
 
 Order = Callable[[Panel], None]
@@ -40,7 +40,7 @@ class Seen:
         self.positions = {
             "pos-commanded": self.status.position,
             "pos-feedback": self.status.actual_position,
-            "pos-relative": relative(self.status.position, self.status),
+            "pos-relative": in_program(self.status.actual_position, self.status),
         }
 
 
@@ -62,7 +62,6 @@ BUTTONS: dict[str, Order] = {
     "estop.reset": _state(linuxcnc.STATE_ESTOP_RESET),
     "flood.off": lambda panel: panel.command.flood(linuxcnc.FLOOD_OFF),
     "flood.on": lambda panel: panel.command.flood(linuxcnc.FLOOD_ON),
-    "home-all": lambda panel: panel.command.home(-1),
     "joint.selected.home": lambda panel: panel.command.home(panel.joint),
     "joint.selected.unhome": lambda panel: panel.command.unhome(panel.joint),
     "lube.off": lambda panel: panel.command.lube(0),
@@ -89,20 +88,20 @@ BUTTONS: dict[str, Order] = {
 
 JOINT_BUTTONS: dict[str, Callable[[Panel, int], None]] = {
     "home": lambda panel, joint: panel.command.home(joint),
-    "select": lambda panel, joint: setattr(panel, "joint", joint),
+    "select": lambda panel, joint: panel.select_joint(joint),
     "unhome": lambda panel, joint: panel.command.unhome(joint),
 }
 
 SPINDLE_BUTTONS: dict[str, Callable[[Panel, int], None]] = {
     "brake-off": lambda panel, n: panel.command.brake(linuxcnc.BRAKE_RELEASE, n),
     "brake-on": lambda panel, n: panel.command.brake(linuxcnc.BRAKE_ENGAGE, n),
-    "decrease": lambda panel, n: panel.command.spindle(linuxcnc.SPINDLE_DECREASE, n),
     "forward": lambda panel, n: panel.turn(n, linuxcnc.SPINDLE_FORWARD),
-    "increase": lambda panel, n: panel.command.spindle(linuxcnc.SPINDLE_INCREASE, n),
     "reverse": lambda panel, n: panel.turn(n, linuxcnc.SPINDLE_REVERSE),
     "start": lambda panel, n: panel.turn(n, linuxcnc.SPINDLE_FORWARD),
     "stop": lambda panel, n: panel.command.spindle(linuxcnc.SPINDLE_OFF, n),
 }
+
+SPINDLE_STEPS = {"decrease": linuxcnc.SPINDLE_DECREASE, "increase": linuxcnc.SPINDLE_INCREASE}
 
 
 def _tool_diameter(status: linuxcnc.stat) -> float:
@@ -192,14 +191,14 @@ class HalUi:
         self.spindles = int(ini.find("TRAJ", "SPINDLES") or 1)
         coordinates = (ini.find("TRAJ", "COORDINATES") or "XYZ").lower()
         self.axes = [letter for letter in LETTERS if letter in coordinates]
-        self.panel = Panel(mdi_commands)
+        self.panel = Panel(mdi_commands, [LETTERS.index(letter) for letter in self.axes])
         self.component = hal.component("halui")
         self.inputs: list[Input] = []
         self.lamps: list[tuple[Callable[[Any], None], Shown]] = []
-        self._add_buttons(len(mdi_commands))
+        self._add_buttons(len(mdi_commands), ini.find("JOINT_0", "HOME_SEQUENCE") is not None)
         self._add_jogs()
-        self._add_dials()
-        self._add_lamps()
+        self._add_dials(ini)
+        self._add_lamps(bool(mdi_commands))
         self.component.ready()
 
     def _new(self, name: str, kind: int, direction: int) -> Any:
@@ -211,18 +210,23 @@ class HalUi:
     def _lamp(self, name: str, kind: int, shown: Shown) -> None:
         self.lamps.append((self._new(name, kind, hal.HAL_OUT).set, shown))
 
-    def _add_buttons(self, mdi_count: int) -> None:
+    def _add_buttons(self, mdi_count: int, home_all: bool) -> None:
         panel = self.panel
         for name, order in BUTTONS.items():
             self._button(name, partial(order, panel))
+        if home_all:
+            self._button("home-all", partial(panel.command.home, -1))
         for joint in range(self.joints):
             for name, act in JOINT_BUTTONS.items():
                 self._button(f"joint.{joint}.{name}", partial(act, panel, joint))
         for spindle in range(self.spindles):
             for name, act in SPINDLE_BUTTONS.items():
                 self._button(f"spindle.{spindle}.{name}", partial(act, panel, spindle))
+            for name, step in SPINDLE_STEPS.items():
+                pin = self._new(f"spindle.{spindle}.{name}", hal.HAL_BIT, hal.HAL_IN)
+                self.inputs.append(Step(pin, partial(panel.change_speed, spindle, step)))
         for index, letter in enumerate(LETTERS):
-            self._button(f"axis.{letter}.select", partial(setattr, panel, "axis", index))
+            self._button(f"axis.{letter}.select", partial(panel.select_axis, index))
         for number in range(mdi_count):
             self._button(f"mdi-command-{number:02}", partial(panel.mdi, number))
 
@@ -238,37 +242,37 @@ class HalUi:
         for name, index in targets:
             self.inputs.append(Jog(self.panel, flag, f"{kind}.{name}", index, self._new, (speed, deadband)))
 
-    def _add_dials(self) -> None:
-        status, command = self.panel.status, self.panel.command
-        self.inputs += [
-            Dial("feed-override", self._new, read=lambda: status.feedrate, write=command.feedrate, scale=OVERRIDE_STEP),
-            Dial(
-                "rapid-override", self._new, read=lambda: status.rapidrate, write=command.rapidrate, scale=OVERRIDE_STEP
-            ),
-            Dial(
-                "max-velocity",
-                self._new,
-                read=lambda: status.max_velocity,
-                write=command.maxvel,
-                scale=0.0,
-                reset=False,
-            ),
-        ]
-        self.inputs += [self._spindle_dial(number) for number in range(self.spindles)]
+    def _add_dials(self, ini: linuxcnc.ini) -> None:
+        status, command, new = self.panel.status, self.panel.command, self._new
 
-    def _spindle_dial(self, number: int) -> Dial:
+        def limit(section: str, key: str, default: float) -> float:
+            return float(ini.find(section, key) or default)
+
+        most_speed = limit("TRAJ", "MAX_LINEAR_VELOCITY", limit("TRAJ", "MAX_VELOCITY", NO_LIMIT))
+        feed = (0.0, limit("DISPLAY", "MAX_FEED_OVERRIDE", 1.0))
+        turning = limit("DISPLAY", "MIN_SPINDLE_OVERRIDE", 0.0), limit("DISPLAY", "MAX_SPINDLE_OVERRIDE", 1.0)
+        self.inputs += [
+            Dial("feed-override", new, lambda: status.feedrate, command.feedrate, feed),
+            Dial("rapid-override", new, lambda: status.rapidrate, command.rapidrate, (0.0, 1.0)),
+            Dial("max-velocity", new, lambda: status.max_velocity, command.maxvel, (0.0, most_speed), scale=0.0),
+        ]
+        self.inputs += [self._spindle_dial(number, turning) for number in range(self.spindles)]
+
+    def _spindle_dial(self, number: int, limits: tuple[float, float]) -> Dial:
         status, command = self.panel.status, self.panel.command
         return Dial(
             f"spindle.{number}.override",
             self._new,
-            read=lambda: status.spindle[number]["override"],
-            write=lambda value: command.spindleoverride(value, number),
-            scale=OVERRIDE_STEP,
+            lambda: status.spindle[number]["override"],
+            lambda value: command.spindleoverride(value, number),
+            limits,
         )
 
-    def _add_lamps(self) -> None:
+    def _add_lamps(self, mdi: bool) -> None:
         for name, (kind, shown) in LAMPS.items():
             self._lamp(name, kind, _of_status(shown))
+        if mdi:
+            self._lamp("halui-mdi-is-running", hal.HAL_BIT, lambda seen: seen.panel.mdi_runs)
         self._lamp("joint.selected", hal.HAL_U32, lambda seen: seen.panel.joint)
         self._lamp("axis.selected", hal.HAL_U32, lambda seen: seen.panel.axis)
         for name, key in JOINT_LAMPS.items():
@@ -284,7 +288,7 @@ class HalUi:
             self._lamp(f"tool.length_offset.{letter}", hal.HAL_FLOAT, _of_status(_tool_offset(index)))
         for letter in self.axes:
             index = LETTERS.index(letter)
-            self._lamp(f"axis.{letter}.is-selected", hal.HAL_BIT, _selected("axis", index))
+            self._lamp(f"axis.{letter}.is-selected", hal.HAL_BIT, _selected("axis_shown", index))
             for name in ("pos-commanded", "pos-feedback", "pos-relative"):
                 self._lamp(f"axis.{letter}.{name}", hal.HAL_FLOAT, _axis_lamp(name, index))
 

@@ -13,6 +13,7 @@ import hal
 from gui.halui_panel import Panel
 
 NewPin = Callable[[str, int, int], Any]
+OVERRIDE_STEP = 0.1  # override of one count until the scale pin says else
 
 
 class Button:
@@ -24,10 +25,25 @@ class Button:
         self._was = False
 
     def scan(self) -> None:
-        pressed = self._get()
-        if pressed and not self._was:
-            self._action()
+        pressed, was = self._get(), self._was
         self._was = pressed
+        if pressed and not was:
+            self._action()
+
+
+class Step:
+    """Acts on each edge; the action is told whether the button was pressed or released."""
+
+    def __init__(self, pin: Any, action: Callable[[bool], None]) -> None:
+        self._get = pin.get
+        self._action = action
+        self._was = False
+
+    def scan(self) -> None:
+        pressed = self._get()
+        if pressed != self._was:
+            self._was = pressed
+            self._action(pressed)
 
 
 class Jog:
@@ -69,13 +85,14 @@ class Jog:
         for step in self._steps:
             step.scan()
         wanted = self._wanted()
-        if self._moving is None and wanted == 0.0:
+        wish = (self._index(), wanted) if wanted else None
+        if wish == self._moving:
             return
-        index = self._moving[0] if self._moving else self._index()
-        if self._moving == (index, wanted):
-            return
-        self._panel.jog(self._flag, index, wanted)
-        self._moving = (index, wanted) if wanted else None
+        moved, self._moving = self._moving, wish
+        if moved is not None and (wish is None or wish[0] != moved[0]):
+            self._panel.jog(self._flag, moved[0], 0.0)
+        if wish is not None:
+            self._panel.jog(self._flag, *wish)
 
 
 class Dial:
@@ -85,14 +102,18 @@ class Dial:
         self,
         name: str,
         new: NewPin,
-        *,
         read: Callable[[], float],
         write: Callable[[float], None],
-        scale: float,
-        reset: bool = True,
+        limits: tuple[float, float],
+        *,
+        scale: float = OVERRIDE_STEP,
     ) -> None:
-        """``read`` and ``write``: the value in the machine; ``scale``: value of one count until the pin says else."""
+        """``read`` and ``write``: the value in the machine; ``scale``: value of one count until the pin says else.
+
+        Without a scale of its own it is no override, and has no button that sets it to 100 %.
+        """
         self._read, self._write = read, write
+        self._limits = limits
         self._enabled = new(f"{name}.count-enable", hal.HAL_BIT, hal.HAL_IN)
         self._enabled.set(True)
         self._counts = new(f"{name}.counts", hal.HAL_S32, hal.HAL_IN)
@@ -101,24 +122,28 @@ class Dial:
         self._scale.set(scale)
         self._value = new(f"{name}.value", hal.HAL_FLOAT, hal.HAL_OUT)
         self._buttons = [
-            Button(new(f"{name}.increase", hal.HAL_BIT, hal.HAL_IN), lambda: self._change(1)),
-            Button(new(f"{name}.decrease", hal.HAL_BIT, hal.HAL_IN), lambda: self._change(-1)),
+            Button(new(f"{name}.increase", hal.HAL_BIT, hal.HAL_IN), partial(self._change, 1)),
+            Button(new(f"{name}.decrease", hal.HAL_BIT, hal.HAL_IN), partial(self._change, -1)),
         ]
-        if reset:
-            self._buttons.append(Button(new(f"{name}.reset", hal.HAL_BIT, hal.HAL_IN), lambda: self._write(1.0)))
+        if scale:
+            self._buttons.append(Button(new(f"{name}.reset", hal.HAL_BIT, hal.HAL_IN), partial(self._set, 1.0)))
         self._seen = 0
 
+    def _set(self, value: float) -> None:
+        low, high = self._limits
+        self._write(min(max(low, value), high))
+
     def _change(self, counts: int) -> None:
-        self._write(max(0.0, self._read() + counts * self._scale.get()))
+        self._set(self._read() + counts * self._scale.get())
 
     def scan(self) -> None:
+        self._value.set(self._read())
         for button in self._buttons:
             button.scan()
-        counts = self._counts.get()
-        if counts != self._seen and self._enabled.get():
-            if self._direct.get():
-                self._write(max(0.0, counts * self._scale.get()))
-            else:
-                self._change(counts - self._seen)
+        counts, seen = self._counts.get(), self._seen
         self._seen = counts
-        self._value.set(self._read())
+        if counts != seen and self._enabled.get():
+            if self._direct.get():
+                self._set(counts * self._scale.get())
+            else:
+                self._change(counts - seen)

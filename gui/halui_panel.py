@@ -9,34 +9,32 @@ import math
 
 import linuxcnc
 
-DEFAULT_SPEED = 500.0  # rpm of a spindle that is started before any S word
 JOINT, AXIS = 1, 0  # jog flags
 
 
 class Panel:
     """The machine as a button sees it."""
 
-    def __init__(self, mdi_commands: list[str]) -> None:
+    def __init__(self, mdi_commands: list[str], axes: list[int]) -> None:
         self.status = linuxcnc.stat()
         self.command = linuxcnc.command()
         self.joint = 0  # selected
-        self.axis = 0
+        self.axis = 0  # selected; X until a button chooses, also where there is no X, as LinuxCNC's
+        self.axis_shown = axes[0] if axes else 0  # by the lamps
+        self.mdi_runs = False
+        self._axes = axes
         self._mdi_commands = mdi_commands
-        self._mode_before_mdi: int | None = None
+        self._mode_before_mdi = linuxcnc.MODE_MANUAL
+
+    def select_joint(self, number: int) -> None:
+        self.joint = number
+
+    def select_axis(self, number: int) -> None:
+        """Axes that the machine does not have cannot be selected."""
+        if number in self._axes:
+            self.axis = self.axis_shown = number
 
     # --- modes -----------------------------------------------------------------------------------------------------
-
-    @property
-    def on(self) -> bool:
-        return self.status.task_state == linuxcnc.STATE_ON
-
-    @property
-    def homed(self) -> bool:
-        return all(self.status.homed[: self.status.joints])
-
-    @property
-    def idle(self) -> bool:
-        return self.status.interp_state == linuxcnc.INTERP_IDLE
 
     def mode(self, mode: int) -> None:
         if self.status.task_mode != mode:
@@ -49,64 +47,67 @@ class Panel:
 
     # --- jogging ---------------------------------------------------------------------------------------------------
 
-    def _ready_to_jog(self, flag: int) -> bool:
-        """Whether jogs of this kind are possible now; switches between joints and axes where that is allowed."""
-        if not self.on or self.status.task_mode != linuxcnc.MODE_MANUAL:
+    def _ready_to_jog(self, flag: int, index: int) -> bool:
+        """Joints are jogged in joint mode, the axes of the machine in teleop mode."""
+        status = self.status
+        if status.task_state != linuxcnc.STATE_ON or status.task_mode != linuxcnc.MODE_MANUAL:
             return False
-        teleop = self.status.motion_mode == linuxcnc.TRAJ_MODE_TELEOP
-        if flag == JOINT and teleop:
-            return False
-        if flag == AXIS and not teleop:
-            if not self.homed:
-                return False
-            self.command.teleop_enable(1)
-        return True
+        if flag == JOINT:
+            return status.motion_mode == linuxcnc.TRAJ_MODE_FREE
+        return index in self._axes and status.motion_mode == linuxcnc.TRAJ_MODE_TELEOP
 
     def jog(self, flag: int, index: int, speed: float) -> None:
         """Jog on at ``speed`` machine units per minute; 0 stops."""
+        if not self._ready_to_jog(flag, index):
+            return
         if speed == 0.0:
             self.command.jog(linuxcnc.JOG_STOP, flag, index)
-        elif self._ready_to_jog(flag):
+        else:
             self.command.jog(linuxcnc.JOG_CONTINUOUS, flag, index, speed / 60.0)
 
     def jog_by(self, flag: int, index: int, speed: float, distance: float) -> None:
         """Jog by a distance; the sign of the distance is the direction."""
-        if distance != 0.0 and self._ready_to_jog(flag):
+        if distance != 0.0 and self._ready_to_jog(flag, index):
             velocity = math.copysign(abs(speed) / 60.0, distance)
             self.command.jog(linuxcnc.JOG_INCREMENT, flag, index, velocity, abs(distance))
 
     # --- programs and MDI ------------------------------------------------------------------------------------------
 
     def run(self) -> None:
-        self.mode(linuxcnc.MODE_AUTO)
-        self.command.auto(linuxcnc.AUTO_RUN, 0)
+        """Run the program that is open, if there is one."""
+        if self.status.file:
+            self.mode(linuxcnc.MODE_AUTO)
+            self.command.auto(linuxcnc.AUTO_RUN, 0)
 
     def step(self) -> None:
         self.mode(linuxcnc.MODE_AUTO)
         self.command.auto(linuxcnc.AUTO_STEP)
 
     def mdi(self, number: int) -> None:
-        """Run one of [HALUI]MDI_COMMAND; afterwards the machine returns to the mode that it was in."""
-        if not self.on or (self.status.task_mode == linuxcnc.MODE_AUTO and not self.idle):
-            return
+        """Run one of [HALUI]MDI_COMMAND; once all of them are done, the mode is again what it was before."""
+        if not self.mdi_runs:
+            self.mdi_runs, self._mode_before_mdi = True, self.status.task_mode
         if self.status.task_mode != linuxcnc.MODE_MDI:
-            self._mode_before_mdi = self.status.task_mode
             self.command.mode(linuxcnc.MODE_MDI)
+            if self.command.wait_complete(0.0) == linuxcnc.RCS_ERROR:
+                return
         self.command.mdi(self._mdi_commands[number])
 
     def finish_mdi(self) -> None:
-        """Go back to the mode from before an MDI command once that is done."""
-        status, before = self.status, self._mode_before_mdi
-        if before is None or status.echo_serial_number < self.command.serial:
+        """Go back to the mode from before the MDI commands once task has done everything; an error is not done."""
+        status = self.status
+        if not self.mdi_runs or status.echo_serial_number < self.command.serial:
             return
-        if status.state != linuxcnc.RCS_EXEC and self.idle and not status.queued_mdi_commands:
-            self._mode_before_mdi = None
-            if status.task_mode == linuxcnc.MODE_MDI:
-                self.command.mode(before)
+        if status.state == linuxcnc.RCS_DONE and not status.queued_mdi_commands:
+            self.mdi_runs = False
+            self.mode(self._mode_before_mdi)
 
     # --- spindles --------------------------------------------------------------------------------------------------
 
     def turn(self, spindle: int, direction: int) -> None:
-        """Start a spindle with the speed of the last S word."""
-        speed = abs(self.status.settings[2]) or DEFAULT_SPEED
-        self.command.spindle(direction, speed, spindle)
+        """Start a spindle with the speed of the last S word, at 1 rpm before any."""
+        self.command.spindle(direction, abs(self.status.settings[2]) or 1.0, spindle)
+
+    def change_speed(self, spindle: int, step: int, pressed: bool) -> None:
+        """A step when the button is pressed; the speed stays when it is released."""
+        self.command.spindle(step if pressed else linuxcnc.SPINDLE_CONSTANT, spindle)

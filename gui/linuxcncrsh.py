@@ -1,8 +1,8 @@
 """``linuxcncrsh``: command a machine over TCP with lines of text, from telnet, nc or a program; port 5007.
 
 Every connection is a `Session`. One task reads a connection's lines and answers them one after the other; orders to
-the machine may wait, so they run in a thread and other connections go on. A client that does not read its replies stops
-only its own session; a line that is too long is answered with a refusal and skipped up to its end.
+the machine may wait, so each session has a thread of its own and the others go on. A client that does not read its
+replies stops only its own session; a line that is too long is answered with a refusal and skipped up to its end.
 
 With the passwords that everybody knows from the manual only this host may connect; with a password of your own
 (--connectpw) the port is open to the network, as LinuxCNC's is. ``--bind`` decides otherwise.
@@ -17,6 +17,9 @@ import os
 import re
 import signal
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import linuxcnc
 from gui.rsh_session import EOL, Session
@@ -27,15 +30,6 @@ CONNECT_PASSWORD = "EMC"
 ENABLE_PASSWORD = "EMCTOO"
 SERVER_NAME = "EMCNETSVR"
 LONGEST_LINE = 4096  # bytes
-MESSAGE_INTERVAL = 0.05  # host seconds between looks at the operator messages
-MESSAGE_KINDS = {
-    linuxcnc.NML_ERROR: "error",
-    linuxcnc.OPERATOR_ERROR: "error",
-    linuxcnc.NML_TEXT: "text",
-    linuxcnc.OPERATOR_TEXT: "text",
-    linuxcnc.NML_DISPLAY: "display",
-    linuxcnc.OPERATOR_DISPLAY: "display",
-}
 _LINE_ENDS = re.compile(rb"[\r\n]+")
 
 
@@ -63,75 +57,99 @@ class LineBuffer:
 
 
 class Server:
-    """The listening socket and its sessions."""
+    """The listening socket, its sessions, and the one order that may be under way."""
 
     def __init__(self, options: argparse.Namespace) -> None:
         self.name: str = options.name
         self.connect_password: str = options.connectpw
         self.enable_password: str = options.enablepw
-        self.in_control: Session | None = None
+        self.folders = [Path(folder) for folder in options.path.split(os.pathsep) if folder]
+        self.sessions: list[Session] = []
+        self.over = False
+        self._quiet: bool = options.quiet
         self._most_sessions: int = options.sessions
-        self._sessions: set[Session] = set()
-        self._over = asyncio.Event()
-        self._loop = asyncio.get_running_loop()
-        self._errors = linuxcnc.error_channel()
+        self._order = ""
+        self._order_lock = threading.Lock()
+        self._end = asyncio.Event()
+
+    # --- orders, called by the sessions' threads -------------------------------------------------------------------
+
+    @property
+    def order_under_way(self) -> str:
+        """Name of the order that a session waits for; empty: none."""
+        return self._order
+
+    def begin_order(self, name: str) -> str:
+        """Take the right to give an order; the name of the one that is under way, if so, else nothing."""
+        with self._order_lock:
+            if not self._order:
+                self._order = name
+                return ""
+            return self._order
+
+    def end_order(self) -> None:
+        self._order = ""
+
+    # --- connections -----------------------------------------------------------------------------------------------
 
     async def serve(self, address: str | None, port: int) -> None:
-        """Serve until `shut_down`; the port in use is written to the runtime folder."""
+        """Serve until a client shuts the machine down or a signal comes; the port is written to the runtime folder."""
         listener = await asyncio.start_server(self._connected, address, port)
         port_file = namespace.runtime_dir() / "linuxcncrsh.port"
         port_file.write_text(f"{listener.sockets[0].getsockname()[1]}\n")
+        loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(number, self._over.set)
-        messages = asyncio.create_task(self._pass_messages_on())
+            loop.add_signal_handler(number, self._end.set)
         try:
-            await self._over.wait()
+            await self._end.wait()
         finally:
-            messages.cancel()
+            self.over = True
             listener.close()
             port_file.unlink(missing_ok=True)
 
-    def shut_down(self) -> None:
-        """End the server, and with it the machine; also from a session's thread."""
-        self._loop.call_soon_threadsafe(self._over.set)
-
-    async def _pass_messages_on(self) -> None:
-        """Give every operator message to every session, because the error channel gives each of them only once."""
-        while True:
-            while (message := self._errors.poll()) is not None:
-                kind, text = message
-                for session in self._sessions:
-                    session.note(MESSAGE_KINDS.get(kind, "text"), text)
-            await asyncio.sleep(MESSAGE_INTERVAL)
-
     async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """One connection from its first byte to its last."""
-        if 0 <= self._most_sessions <= len(self._sessions):
+        if 0 < self._most_sessions <= len(self.sessions):
             writer.close()
             return
-        session = Session(self)
-        self._sessions.add(session)
-        try:
-            await self._converse(session, reader, writer)
-        except ConnectionError:
-            pass  # the client went away; the machine goes on
-        finally:
-            session.enabled = False
-            self._sessions.discard(session)
-            writer.close()
+        session = Session(self, writer.get_extra_info("socket").fileno())
+        self._tell(f"New connection {session.number} from {writer.get_extra_info('peername')[0]}")
+        self.sessions.append(session)
+        with ThreadPoolExecutor(1, f"session-{session.number}") as thread:
+            try:
+                await self._converse(session, thread, reader, writer)
+            except ConnectionError:
+                pass  # the client went away; the machine goes on
+            finally:
+                self.sessions.remove(session)
+                self._tell(f"Connection terminated '{session.client}' ({session.number})")
+                writer.close()
 
-    async def _converse(self, session: Session, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        lines = LineBuffer()
+    async def _converse(
+        self,
+        session: Session,
+        thread: ThreadPoolExecutor,
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+    ) -> None:
+        loop, lines = asyncio.get_running_loop(), LineBuffer()
         while not session.closing and (data := await reader.read(65536)):
             for line in lines.feed(data):
                 if line is None:
-                    reply = f"NAK: a line may have {LONGEST_LINE} characters{EOL}"
+                    reply = f"error: a line may have {LONGEST_LINE} characters{EOL}"
                 else:
-                    reply = await asyncio.to_thread(session.answer, line)
+                    reply = await loop.run_in_executor(thread, session.answer, line)
                 writer.write(reply.encode("latin-1", "replace"))
                 await writer.drain()
+                if session.shutting_down:
+                    self._end.set()
                 if session.closing:
                     break
+
+    def _tell(self, text: str) -> None:
+        """Who comes and goes, for the operator's terminal."""
+        if not self._quiet:
+            print(f"linuxcncrsh: {text}", flush=True)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -157,16 +175,32 @@ async def _serve(options: argparse.Namespace, address: str | None) -> None:
         await Server(options).serve(address, options.port)
 
 
+def _word(text: str) -> str:
+    """A password or name: it stands in a line between blanks."""
+    if not text.isprintable() or " " in text:
+        raise argparse.ArgumentTypeError("control and space characters are not allowed")
+    return text
+
+
+def _enable_password(text: str) -> str:
+    if text.upper() == "OFF":
+        raise argparse.ArgumentTypeError("OFF cannot be the password, because `set enable off` gives control back")
+    return _word(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="linuxcncrsh", description="Command a CNC machine over TCP.")
-    parser.add_argument("-p", "--port", type=int, default=PORT, help="port; 0: any free one (default 5007)")
-    parser.add_argument("-n", "--name", default=SERVER_NAME, help="name given to clients (default EMCNETSVR)")
-    parser.add_argument("-w", "--connectpw", default=CONNECT_PASSWORD, help="password of `hello` (default EMC)")
-    parser.add_argument("-e", "--enablepw", default=ENABLE_PASSWORD, help="password of `set enable` (default EMCTOO)")
-    parser.add_argument("-s", "--sessions", type=int, default=-1, help="most connections at a time (default: all)")
-    parser.add_argument("--bind", metavar="ADDRESS", help="address to listen on; empty: all")
-    parser.add_argument("--path", metavar="FOLDER", help="where programs are, for callers that give it")
-    parser.add_argument("-ini", metavar="FILE", help="INI file, for callers that give it")
+    programs = str(Path.home() / "nc_files")
+    add = parser.add_argument
+    add("-p", "--port", type=int, default=PORT, help="port; 0: any free one (default 5007)")
+    add("-n", "--name", type=_word, default=SERVER_NAME, help="name given to clients (default EMCNETSVR)")
+    add("-w", "--connectpw", type=_word, default=CONNECT_PASSWORD, help="password of `hello` (default EMC)")
+    add("-e", "--enablepw", type=_enable_password, default=ENABLE_PASSWORD, help="of `set enable` (default EMCTOO)")
+    add("-s", "--sessions", type=int, default=0, help="most connections at a time; 0 (default) or less: any number")
+    add("-d", "--path", metavar="FOLDERS", default=programs, help="where `set open` looks, separated by colons")
+    add("-q", "--quiet", action="store_true", help="do not print who connects")
+    add("--bind", metavar="ADDRESS", help="address to listen on; empty: all")
+    add("-ini", metavar="FILE", help="INI file of the machine")
     return parser
 
 

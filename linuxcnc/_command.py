@@ -186,9 +186,9 @@ class command:
         else:
             raise error(f"jog({action}): JOG_STOP, JOG_CONTINUOUS or JOG_INCREMENT are allowed")
 
-    def override_limits(self) -> None:
-        """Allow jogging off a hard limit until the next jog ends."""
-        self._send(emc.EMC_JOINT_OVERRIDE_LIMITS, joint=0)
+    def override_limits(self, joint: int = 0) -> None:
+        """Allow jogging off a hard limit until the next jog ends; -1 (LinuxCNC's has no argument): not any more."""
+        self._send(emc.EMC_JOINT_OVERRIDE_LIMITS, joint=joint)
 
     def set_min_limit(self, joint: int, limit: float) -> None:
         """Set the lower soft limit of a joint."""
@@ -205,6 +205,10 @@ class command:
     def traj_mode(self, mode: int) -> None:
         """Set the mode of motion: TRAJ_MODE_FREE, TRAJ_MODE_COORD or TRAJ_MODE_TELEOP."""
         self._send(emc.EMC_TRAJ_SET_MODE, mode=mode)
+
+    def clear_probe_tripped(self) -> None:
+        """Forget that the probe has tripped; LinuxCNC's module has no method for it, linuxcncrsh needs one."""
+        self._send(emc.EMC_TRAJ_CLEAR_PROBE_TRIPPED_FLAG)
 
     # --- overrides -------------------------------------------------------------------------------------------------
 

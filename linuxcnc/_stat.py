@@ -193,6 +193,7 @@ class stat:
     g5x_offset = _pose("task.g5x_offset", "offset of the active coordinate system")
     g92_offset = _pose("task.g92_offset", "G92 offset")
     gcodes = _integers("task.activeGCodes", "active G-code of each modal group, times ten")
+    heartbeat = _integer("motion.heartbeat", "servo periods since motion began, modulo 2**32; LinuxCNC's has it not")
     homed = _of_joints("homed", "1 for each homed joint")
     id = _integer("motion.traj.id", "id of the executing move")
     ini_filename = _text("task.ini_filename", "path of the INI file")

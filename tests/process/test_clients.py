@@ -128,7 +128,7 @@ def test_the_main_job_over_linuxcncrsh(mill, tmp_path):
     part.write_text("G21 G90 G94\nG1 X12.5 F3000\nG1 Y-7\nM2\n")
     with RshClient(mill.port()) as client:
         client.take_control()
-        for line in ("set estop off", "set machine on", "set set_wait done", "set mode manual", "set home -1"):
+        for line in ("set estop off", "set machine on", "set wait_mode done", "set mode manual", "set home -1"):
             assert client.ask(line) == f"SET {line.split()[1].upper()} ACK"
         wait_until(lambda: client.ask("get joint_homed").startswith("JOINT_HOMED YES YES YES"), "home")
         assert client.ask("set mode auto") == "SET MODE ACK"

@@ -38,6 +38,8 @@ CALLS = [
         {"joint_or_axis": 0, "jjogmode": 1, "vel": 10.0, "incr": 0.5},
     ),
     ("override_limits", (), "EMC_JOINT_OVERRIDE_LIMITS", {}),
+    ("override_limits", (-1,), "EMC_JOINT_OVERRIDE_LIMITS", {"joint": -1}),
+    ("clear_probe_tripped", (), "EMC_TRAJ_CLEAR_PROBE_TRIPPED_FLAG", {}),
     ("set_min_limit", (1, -20.0), "EMC_JOINT_SET_MIN_POSITION_LIMIT", {"joint": 1, "limit": -20.0}),
     ("set_max_limit", (1, 20.0), "EMC_JOINT_SET_MAX_POSITION_LIMIT", {"joint": 1, "limit": 20.0}),
     ("teleop_enable", (1,), "EMC_TRAJ_SET_TELEOP_ENABLE", {"enable": 1}),
