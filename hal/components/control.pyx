@@ -251,7 +251,7 @@ cdef void supply(Supply* s, long period) noexcept nogil:
 declare("supply", "Values set by hand, as outputs; setp and sets have made it unnecessary", sizeof(Supply), [
     pin_out(BIT, "q", "d"), pin_out(BIT, "_q", "not d", True), pin_out(FLOAT, "variable", "value"),
     pin_out(FLOAT, "_variable", "-value"), pin_io(BIT, "d"), pin_io(FLOAT, "value"),
-], {"update": <size_t>&supply}, counted_by="num_chan", most=8)
+], {"update": <size_t>&supply}, counted_by="num_chan", most=8, takes_names=False)
 
 
 # ---- the thread's own timing ----

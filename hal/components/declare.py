@@ -94,6 +94,7 @@ class Declaration:
     counted_by: str = "count"
     default_count: int = 1
     most: int | None = None
+    takes_names: bool = True
     uses_fp: bool | Callable[[int], bool] = True  # or by personality
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
@@ -119,7 +120,8 @@ class Declaration:
         comp.ready()
 
     def _check(self, args: dict[str, str]) -> None:
-        allowed = [self.counted_by, "names", *self.options, *(["personality"] if self.personality is not None else [])]
+        allowed = [self.counted_by, *(["names"] if self.takes_names else []), *self.options]
+        allowed += ["personality"] if self.personality is not None else []
         for key in args:
             if key not in allowed:
                 raise HalError(f"{self.name}: unknown parameter '{key}'; {', '.join(allowed)} are known")
@@ -129,17 +131,25 @@ class Declaration:
     def instances(self, args: dict[str, str]) -> list[str]:
         """The instances' names."""
         if "names" in args:
-            return [name for name in args["names"].split(",") if name]
-        if self.sizes:
-            count = len(self._personalities(args))
-        else:
-            counts = numbers(self.name, args, self.counted_by) or [self.default_count]
-            count = (counts[0] or self.default_count) if len(counts) == 1 else 0
+            names = [name for name in args["names"].split(",") if name]
+            if self.most is not None and len(names) > self.most:
+                raise HalError(f"{self.name}: {len(names)} names; up to {self.most} are possible")
+            return names
+        count = self._count(args)
         if count < 1 or (self.most is not None and count > self.most):
             most = "" if self.most is None else f" to {self.most}"
             given = args.get(self.counted_by, "")
             raise HalError(f"{self.name}: {self.counted_by}={given}: from 1{most} would be right")
         return [(self.instance or f"{self.prefix}.{{}}").format(i) for i in range(count)]
+
+    def _count(self, args: dict[str, str]) -> int:
+        """How many instances; 0 counts as not given where it could be names instead."""
+        if self.sizes:
+            return len(self._personalities(args))
+        counts = numbers(self.name, args, self.counted_by) or [self.default_count]
+        if len(counts) != 1:
+            return 0
+        return counts[0] or (self.default_count if self.takes_names else 0)
 
     def _personalities(self, args: dict[str, str]) -> list[int]:
         if self.decode is not None:

@@ -3,7 +3,7 @@
 Each has a fast function that looks at bits and a slower one that calculates, shared by all channels.
 """
 
-from libc.math cimport fabs
+from libc.math cimport INFINITY, fabs
 from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t
 
 from hal.cell cimport hal_at as at, hal_pin
@@ -35,13 +35,14 @@ cdef struct Encoder:
     # the fast function's
     uint8_t phases, old_Z, old_latch
     int32_t raw
-    int64_t time_ns, edge_ns  # now, and of the last count
+    int64_t time_ns, edge_ns  # of the next look at the phases, and of the one that saw the last count
     int64_t gap_ns  # between the last two counts
     int32_t index_raw, latch_raw
     uint8_t index_armed, index_seen, latch_seen
     # the slow function's
     int32_t zero_raw, seen_raw
     int64_t seen_ns  # time of the last count that the velocity knows
+    uint8_t counts_seen  # since a standstill, up to 2
 
 cdef struct Encoders:
     size_t count
@@ -95,7 +96,6 @@ cdef void update_counters(Encoders* all_, long period) noexcept nogil:
     cdef int step, missing
     for i in range(all_.count):
         s = all_.channel[i]
-        s.time_ns += period
         step = count_of(s)
         missing = 0
         if step != 0:
@@ -108,23 +108,30 @@ cdef void update_counters(Encoders* all_, long period) noexcept nogil:
         see_index(s, missing)
         see_latch(s)
         at(s.rawcounts).s = s.raw
+        s.time_ns += period
 
 
 cdef void estimate_velocity(Encoder* s, double scale) noexcept nogil:
-    """From the times of the counts: exact over whole counts, and falling off by itself when none come."""
+    """From the times of the counts: exact over whole counts, and falling off by itself when none come.
+
+    After a standstill the first count has no time before it, and the second may have come from anywhere: they tell none.
+    """
     cdef int32_t counts = s.raw - s.seen_raw
-    cdef double waited, bound
+    cdef double bound
     if counts != 0:
-        at(s.velocity).f = counts / scale / (max(s.edge_ns - s.seen_ns, <int64_t>1) * 1e-9)
+        if s.counts_seen >= 2:
+            at(s.velocity).f = counts / scale / (max(s.edge_ns - s.seen_ns, <int64_t>1) * 1e-9)
+        else:
+            s.counts_seen += 1
         s.seen_raw = s.raw
         s.seen_ns = s.edge_ns
     else:
-        waited = (s.time_ns - s.seen_ns) * 1e-9
-        bound = 1.0 / (fabs(scale) * waited) if waited > 0.0 else 1e30
-        if bound < at(s.min_speed_estimate).f:
-            at(s.velocity).f = 0.0
-        elif fabs(at(s.velocity).f) > bound:
+        bound = 1.0 / (fabs(scale) * (s.time_ns - s.seen_ns) * 1e-9) if s.time_ns > s.seen_ns else INFINITY
+        if fabs(at(s.velocity).f) > bound:
             at(s.velocity).f = bound if at(s.velocity).f > 0.0 else -bound
+            if bound < at(s.min_speed_estimate).f:
+                at(s.velocity).f = 0.0
+                s.counts_seen = 0
     at(s.velocity_rpm).f = at(s.velocity).f * 60.0
 
 
@@ -218,14 +225,14 @@ declare("counter", "Counter of rising edges; encoder in counter mode does the sa
     pin_out(S32, "rawcounts"), pin_out(S32, "counts"), pin_out(FLOAT, "position"), pin_out(FLOAT, "velocity", "units per s"),
     pin_io(FLOAT, "position-scale", "counts per unit", 1.0),
 ], {}, shared={"update-counters": <size_t>&count_edges, "capture-position": <size_t>&capture_counts},
-   counted_by="num_chan", most=MAX_CHANNELS)
+   counted_by="num_chan", most=MAX_CHANNELS, takes_names=False)
 
 
 # ---- encoder_ratio ----
 
 cdef struct EncoderRatio:
     hal_pin master_A, master_B, slave_A, slave_B, enable, error, master_ppr, slave_ppr, master_teeth, slave_teeth
-    uint8_t master_phases, slave_phases, enabled
+    uint8_t master_phases, slave_phases, enabled, sampled
     int64_t master, slave  # counts since enable rose; of the slave since the start
 
 cdef struct EncoderRatios:
@@ -235,13 +242,18 @@ cdef struct EncoderRatios:
 cdef void sample_ratio(EncoderRatios* all_, long period) noexcept nogil:
     cdef size_t i
     cdef EncoderRatio* s
+    cdef int master, slave
     for i in range(all_.count):
         s = all_.channel[i]
-        s.master += quadrature(&s.master_phases, at(s.master_A).b != 0, at(s.master_B).b != 0)
-        s.slave += quadrature(&s.slave_phases, at(s.slave_A).b != 0, at(s.slave_B).b != 0)
+        master = quadrature(&s.master_phases, at(s.master_A).b != 0, at(s.master_B).b != 0)
+        slave = quadrature(&s.slave_phases, at(s.slave_A).b != 0, at(s.slave_B).b != 0)
+        if s.sampled:  # the phases with which it all begins are no movement
+            s.master += master
+            s.slave += slave
+        s.sampled = 1
 
 cdef double turns(int64_t counts, uint32_t ppr) noexcept nogil:
-    return counts / (4.0 * ppr) if ppr > 0 else 0.0
+    return counts / <double>ppr if ppr > 0 else 0.0
 
 cdef void update_ratio(EncoderRatios* all_, long period) noexcept nogil:
     cdef size_t i
@@ -260,17 +272,22 @@ cdef void update_ratio(EncoderRatios* all_, long period) noexcept nogil:
 declare("encoder_ratio", "Electronic gear: error of a slave encoder against a master", sizeof(EncoderRatio), [
     pin_in(BIT, "master-A"), pin_in(BIT, "master-B"), pin_in(BIT, "slave-A"), pin_in(BIT, "slave-B"),
     pin_in(BIT, "enable", "false: error is the slave's position"), pin_out(FLOAT, "error", "revolutions of the slave"),
-    pin_io(U32, "master-ppr", "pulses per revolution"), pin_io(U32, "slave-ppr"), pin_io(U32, "master-teeth"),
+    pin_io(U32, "master-ppr", "counts per revolution: all edges of both phases"), pin_io(U32, "slave-ppr"), pin_io(U32, "master-teeth"),
     pin_io(U32, "slave-teeth"),
 ], {}, shared={"sample": <size_t>&sample_ratio, "update": <size_t>&update_ratio}, counted_by="num_chan", most=MAX_CHANNELS)
 
 
 # ---- sim_encoder ----
 
+cdef enum:
+    COUNT_BITS = 27
+
+cdef double COUNT = 1 << COUNT_BITS
+
 cdef struct SimEncoder:
     hal_pin phase_A, phase_B, phase_Z, ppr, speed, scale, rawcounts
     double rate  # counts per s
-    double position  # counts
+    int64_t position  # 1 / COUNT of a count
     int32_t counts_per_turn
 
 cdef struct SimEncoders:
@@ -284,12 +301,12 @@ cdef void sim_make_pulses(SimEncoders* all_, long period) noexcept nogil:
     cdef int64_t count
     for i in range(all_.count):
         s = all_.channel[i]
-        s.position += min(max(s.rate * period * 1e-9, -1.0), 1.0)
-        count = <int64_t>s.position - (1 if s.position < 0.0 and s.position != <int64_t>s.position else 0)
+        s.position += <int64_t>(min(max(s.rate * period * 1e-9, -1.0), 1.0) * COUNT)
+        count = s.position >> COUNT_BITS
         at(s.rawcounts).s = <int32_t>count
-        at(s.phase_A).b = (count & 3) == 1 or (count & 3) == 2
-        at(s.phase_B).b = (count & 3) == 2 or (count & 3) == 3
-        at(s.phase_Z).b = s.counts_per_turn > 0 and count % s.counts_per_turn == 0
+        at(s.phase_A).b = (count & 3) == 0 or (count & 3) == 1
+        at(s.phase_B).b = (count & 3) == 1 or (count & 3) == 2
+        at(s.phase_Z).b = count == 0 or (s.counts_per_turn > 0 and count % s.counts_per_turn == 0)
 
 cdef void sim_update_speed(SimEncoders* all_, long period) noexcept nogil:
     cdef size_t i

@@ -166,7 +166,7 @@ cdef void toggle(Toggle* s, long period) noexcept nogil:
         s.held = 0
         return
     s.held += 1
-    if s.held <= at(s.debounce).u:
+    if s.held < (at(s.debounce).u or 2):
         return
     s.held = 0
     s.pressed = not s.pressed
@@ -175,7 +175,7 @@ cdef void toggle(Toggle* s, long period) noexcept nogil:
 
 declare("toggle", "Push-on, push-off from a push button", sizeof(Toggle), [
     pin_in(BIT, "in", "the button"), pin_io(BIT, "out", "changes each time the button is pressed"),
-    param_rw(U32, "debounce", "periods that the button must hold still", 2),
+    param_rw(U32, "debounce", "periods that the button must hold still; 0 is 2", 2),
 ], {"": <size_t>&toggle}, uses_fp=False)
 
 

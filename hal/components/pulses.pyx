@@ -18,10 +18,10 @@ cdef enum:
 
 cdef struct Pwmgen:
     hal_pin enable, value, scale, offset, dither_pwm, pwm_freq, min_dc, max_dc, curr_dc, pwm, dir, up, down
-    double on_s  # wanted on-time of each pulse
-    double carry_s  # on-time still owed, when dithering, or sum of a density modulation
+    double density  # sum of a density modulation
     double duty  # size of the duty cycle
     int64_t length_ns, on_ns, at_ns  # of this pulse: whole, on, gone
+    int64_t owed_ns  # on-time that is still to come, when dithering
     uint8_t on, backwards, modulate_density
 
 cdef struct Pwmgens:
@@ -39,12 +39,24 @@ cdef void put(Pwmgen* s, bint on) noexcept nogil:
         at(s.down).b = on and s.backwards
 
 
-cdef void begin_pulse(Pwmgen* s, long period) noexcept nogil:
-    """On-time of the next pulse in whole periods; dithering pays the rest later."""
-    cdef double on = s.on_s + (s.carry_s if at(s.dither_pwm).b else 0.0)
-    s.at_ns = 0
-    s.on_ns = min(max(<int64_t>(on * 1e9 / period + 0.5), <int64_t>0) * period, s.length_ns)
-    s.carry_s = on - s.on_ns * 1e-9 if at(s.dither_pwm).b else 0.0
+cdef void begin_pulse(Pwmgen* s) noexcept nogil:
+    """Dithering carries what whole periods leave over, of the on-time and of the pulse's length."""
+    s.on = 1
+    if at(s.dither_pwm).b:
+        s.owed_ns += s.on_ns
+        s.at_ns -= s.length_ns
+    else:
+        s.at_ns = 0
+
+
+cdef bint is_on(Pwmgen* s, long period) noexcept nogil:
+    """Whether the pulse is on in this period; once it is off it stays so."""
+    if at(s.dither_pwm).b:
+        s.on = s.owed_ns > 0
+        s.owed_ns -= period if s.on else 0
+    else:
+        s.on = s.on and s.at_ns < s.on_ns
+    return s.on
 
 
 cdef void make_pulses(Pwmgens* all_, long period) noexcept nogil:
@@ -56,20 +68,19 @@ cdef void make_pulses(Pwmgens* all_, long period) noexcept nogil:
         s = all_.channel[i]
         if not at(s.enable).b:
             s.at_ns = s.length_ns
-            s.carry_s = 0.0
+            s.owed_ns = 0
+            s.density = 0.0
             s.backwards = 0
             put(s, False)
         elif s.modulate_density:
-            s.carry_s += s.duty
-            put(s, s.carry_s > 0.0)
-            if s.carry_s > 0.0:
-                s.carry_s -= 1.0
+            s.density += s.duty
+            put(s, s.density > 0.0)
+            if s.density > 0.0:
+                s.density -= 1.0
         else:
             if s.at_ns >= s.length_ns:
-                begin_pulse(s, period)
-                s.on = 1
-            s.on = s.on and s.at_ns < s.on_ns
-            put(s, s.on)
+                begin_pulse(s)
+            put(s, is_on(s, period))
             s.at_ns += period
 
 
@@ -83,10 +94,12 @@ cdef void set_length(Pwmgen* s) noexcept nogil:
         return
     if at(s.pwm_freq).f > highest:
         at(s.pwm_freq).f = highest
+    if at(s.dither_pwm).b:
+        s.length_ns = <int64_t>(1e9 / at(s.pwm_freq).f)
+        return
     periods = <int64_t>(1e9 / at(s.pwm_freq).f / make_period_ns + 0.5)
     s.length_ns = max(periods, <int64_t>2) * make_period_ns
-    if not at(s.dither_pwm).b:
-        at(s.pwm_freq).f = 1e9 / s.length_ns
+    at(s.pwm_freq).f = 1e9 / s.length_ns
 
 
 cdef void update_channel(Pwmgen* s) noexcept nogil:
@@ -107,7 +120,8 @@ cdef void update_channel(Pwmgen* s) noexcept nogil:
         periods = s.length_ns // make_period_ns
         s.duty = <double><int64_t>(s.duty * periods + 0.5) / periods
         s.on_ns = <int64_t>(s.duty * periods + 0.5) * make_period_ns
-    s.on_s = s.duty * s.length_ns * 1e-9
+    else:
+        s.on_ns = <int64_t>(s.duty * s.length_ns)
     if s.dir != NULL:
         at(s.dir).b = s.backwards
     at(s.curr_dc).f = -s.duty if s.backwards else s.duty

@@ -43,7 +43,8 @@ def declared(declaration: Declaration) -> Iterator[str]:
     """The section of one component."""
     yield f"## {declaration.name}\n"
     yield f"{declaration.doc}.\n"
-    options = [f"`{declaration.counted_by}=`", "`names=`", *(f"`{option}=`" for option in declaration.options)]
+    names = ["`names=`"] if declaration.takes_names else []
+    options = [f"`{declaration.counted_by}=`", *names, *(f"`{option}=`" for option in declaration.options)]
     if declaration.personality is not None:
         options.append("`personality=`")
     most = f", up to {declaration.most}" if declaration.most else ""

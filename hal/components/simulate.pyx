@@ -42,9 +42,9 @@ cdef void sim_home_switch(SimHomeSwitch* s, long period) noexcept nogil:
     elif distance < -at(s.hysteresis).f:
         at(s.home_sw).b = 0
     if at(s.index_enable).b:
-        s.waited += period * 1e-9
-        if s.waited >= at(s.index_delay_ms).f * 1e-3:
+        if s.waited >= at(s.index_delay_ms).f * 1e-3 - 1e-12:
             at(s.index_enable).b = 0
+        s.waited += period * 1e-9
     if not at(s.index_enable).b:
         s.waited = 0.0
 

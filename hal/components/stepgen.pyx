@@ -52,6 +52,7 @@ cdef struct Stepgen:
     int64_t wanted_rate
     int64_t rate_change  # largest, of a period
     double old_command  # steps
+    double frequency_wanted  # steps per s, of the last update
     long high_ns, low_ns, setup_ns, hold_ns  # until the pulse may end, the next may begin, a step may follow dir, dir may change
     uint8_t backwards
     uint8_t commanded
@@ -183,7 +184,7 @@ cdef void update_channel(Stepgen* s, double dt) noexcept nogil:
     cdef double make_dt = make_period_ns * 1e-9
     cdef double top = highest_frequency(s)
     cdef double maxaccel = fabs(at(s.maxaccel).f) * scale
-    cdef double v = s.rate / (STEP * make_dt)
+    cdef double v = s.frequency_wanted  # make-pulses may still be on its way there
     cdef double wanted
     if 0.0 < at(s.maxvel).f * scale:
         if at(s.maxvel).f * scale > top:
@@ -194,7 +195,7 @@ cdef void update_channel(Stepgen* s, double dt) noexcept nogil:
     if not at(s.enable).b:
         s.wanted_rate = s.rate = 0
         s.commanded = 0
-        at(s.frequency).f = 0.0
+        s.frequency_wanted = at(s.frequency).f = 0.0
         return
     if s.velocity_cmd != NULL:
         wanted = at(s.velocity_cmd).f * at(s.position_scale).f
@@ -202,7 +203,7 @@ cdef void update_channel(Stepgen* s, double dt) noexcept nogil:
         wanted = to_position(s, v, maxaccel, dt)
     wanted = min(max(wanted, v - maxaccel * dt), v + maxaccel * dt)
     wanted = min(max(wanted, -top), top)
-    at(s.frequency).f = wanted
+    s.frequency_wanted = at(s.frequency).f = wanted
     s.wanted_rate = <int64_t>(wanted * make_dt * STEP)
     s.rate_change = max(<int64_t>(maxaccel * make_dt * make_dt * STEP), <int64_t>1)
 

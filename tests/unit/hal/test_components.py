@@ -126,7 +126,7 @@ def series(bench: Bench, function: str, pin: str, values: str, out: str = "out")
 @pytest.mark.parametrize(
     ("name", "given", "pin", "values", "expected"),
     [
-        ("toggle", {"debounce": 1}, "in_", "0111110001110000", "0011111111000000"),
+        ("toggle", {"debounce": 1}, "in_", "0111110001110000", "0111111110000000"),
         ("edge", {"in_edge": False}, "in_", "0110010", "0100010"),
         ("edge", {"in_edge": True}, "in_", "0110010", "0001001"),
         ("edge", {"both": True}, "in_", "0110010", "0101011"),

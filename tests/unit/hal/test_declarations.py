@@ -10,6 +10,7 @@ import pytest
 from hal import components
 from hal.components.declare import DECLARED, Declaration
 from hal.realtime import Host
+from nml.errors import HalError
 
 FOLDER = Path(components.__file__).parent
 components.names()  # imports the groups
@@ -90,8 +91,8 @@ def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(DECLARED))
 def test_names_become_instances(host: Host, name: str) -> None:
-    if DECLARED[name].sizes:
-        pytest.skip("its instances are counted by a list")
+    if DECLARED[name].sizes or not DECLARED[name].takes_names or DECLARED[name].most == 1:
+        pytest.skip("its instances are counted by a list, have no names of their own, or there is one only")
     personality = [] if DECLARED[name].personality is None else ["personality=0x1F02,0x1F02"]
     host.load(name, ["names=one,two", *personality])
     owners = {pin.name.split(".")[0] for pin in host.hal.segment.items(0) if not pin.name.endswith(".time")}
@@ -100,3 +101,20 @@ def test_names_become_instances(host: Host, name: str) -> None:
 
 def test_every_component_has_a_text() -> None:
     assert [name for name, declaration in DECLARED.items() if not declaration.doc] == []
+
+
+def test_more_names_than_channels_are_refused(host: Host) -> None:
+    with pytest.raises(HalError, match="9 names; up to 8 are possible"):
+        host.load("encoder", ["names=" + ",".join(f"e{n}" for n in range(9))])
+    assert host.hal.segment.find_comp("encoder") is None
+
+
+@pytest.mark.parametrize(("name", "made"), [("encoder", 3), ("pid", 3), ("siggen", 1)])
+def test_no_channels_are_the_usual_number_where_names_are_possible(host: Host, name: str, made: int) -> None:
+    host.load(name, ["num_chan=0"])
+    assert len({p.name.split(".")[1] for p in host.hal.segment.items(0) if p.name[len(name) + 1].isdigit()}) == made
+
+
+def test_no_channels_are_refused_where_names_are_not_possible(host: Host) -> None:
+    with pytest.raises(HalError, match="num_chan=0: from 1 to 8 would be right"):
+        host.load("counter", ["num_chan=0"])
