@@ -1,7 +1,7 @@
 """A simulated mill run by Debian's LinuxCNC, away from everything: own network, shared memory, processes and /tmp.
 
 ``session`` starts it as an ordinary user (it refuses to run as root) together with a script for our Python, which is
-the only program that can reach it.
+the only program that can reach it. ``display`` runs a script for Debian's Python as the machine's display.
 """
 
 from __future__ import annotations
@@ -129,11 +129,27 @@ _REASON = reason_to_skip()
 needs_stock_machine = pytest.mark.skipif(_REASON is not None, reason=_REASON or "")
 
 
+def display(script: str, *, changes: dict[str, str] | None = None, seconds: float = 120.0) -> list[Any]:
+    """Run ``script`` with Debian's Python as the display of a stock machine: what it put into the list ``out``.
+
+    ``changes``: pieces of the INI file and what stands in their place.
+    """
+    text = f"#!/usr/bin/python3\nimport json, os, subprocess, sys, time\nimport linuxcnc\nout = []\n{script}\n"
+    text += "open('out.json', 'w').write(json.dumps(out))\nopen('over', 'w').close()\n"
+    wait = "import os, time\nwhile not os.path.exists('over') and os.getppid() > 1: time.sleep(0.05)\n"
+    return _run(wait, "", seconds, text, changes or {})
+
+
 def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]:
     """Run ``script`` with our Python beside a stock machine: what it put into the list ``out``."""
+    client = f"{WAIT_FOR_SERVER}{script}\nopen('out.json', 'w').write(json.dumps(out))\n"
+    return _run(client, options, seconds, DISPLAY, {})
+
+
+def _run(client: str, options: str, seconds: float, display: str, changes: dict[str, str]) -> list[Any]:
     folder = Path(tempfile.mkdtemp(prefix="pyemc-stock-", dir="/var/tmp"))
     try:
-        _prepare(folder, script, options)
+        _prepare(folder, client, options, display, changes)
         command = [*shield.SHIELD, "--mount", "--kill-child"]
         command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
         command += [str(SOURCE)]
@@ -145,18 +161,22 @@ def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _prepare(folder: Path, script: str, options: str) -> None:
+def _prepare(folder: Path, client: str, options: str, display: str, changes: dict[str, str]) -> None:
     nml = Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()
     axes = "".join(AXIS.format(letter=letter, number=number) for number, letter in enumerate("XYZ"))
+    ini = INI.format(folder=folder) + axes
+    for old, new in changes.items():
+        assert old in ini, old
+        ini = ini.replace(old, new)
     files = {
-        "machine.ini": INI.format(folder=folder) + axes,
+        "machine.ini": ini,
         "stock.hal": HAL,
         "stock.tbl": "T1 P1 Z1.5 D3\n",
         "stock.var": "",
         "server.nml": nml,
         "client.nml": remote_text(nml, options),
-        "display": DISPLAY,
-        "client.py": f"{WAIT_FOR_SERVER}{script}\nopen('out.json', 'w').write(json.dumps(out))\n",
+        "display": display,
+        "client.py": client,
     }
     for name, text in files.items():
         (folder / name).write_text(text)
