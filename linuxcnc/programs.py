@@ -21,6 +21,7 @@ MODULES = {
     "halui": "gui.halui",
     "linuxcncrsh": "gui.linuxcncrsh",
     "linuxcncsvr": "nml.net.server",
+    "web": "gui.web",
 }
 
 

@@ -16,7 +16,7 @@ ALLOWED = {
     "emctask": {"nml", "rs274ngc"},
     "emcio": {"nml", "hal"},
     "linuxcnc": {"nml", "hal"},
-    "gui": {"linuxcnc", "hal", "nml.clock", "nml.namespace", "nml.errors"},
+    "gui": {"linuxcnc", "hal", "nml.clock", "nml.namespace", "nml.errors", "nml.inifile"},
 }
 # Libraries that know no bus: the planner and the kinematics
 BUSLESS = {"emcmot/tp": {"nml.errors", "emcmot", "cython"}}

@@ -1,0 +1,361 @@
+/**
+ * The tool path in three dimensions: moves in buffer geometry, a piece for each chunk, so that a million of them appear
+ * while they still arrive. Draws only when something changed. Coordinates are machine units; Z points up.
+ */
+
+import * as THREE from "../vendor/three/three.module.min.js";
+import { OrbitControls } from "../vendor/three/OrbitControls.js";
+import { AXES, KIND, startOf } from "./data.js";
+import { colourOf } from "./colours.js";
+
+const TRAIL_POINTS = 20_000;
+const FRAME_MS = 33; // between two pictures at most
+const PICK_PIXELS = 8;
+const FAR = 1e6;
+
+/** Where the camera stands and what is up, for each view. */
+const VIEWS = /** @type {Record<string, [number[], number[]]>} */ ({
+  x: [[1, 0, 0], [0, 0, 1]],
+  y: [[0, -1, 0], [0, 0, 1]],
+  z: [[0, 0, 1], [0, 1, 0]],
+  p: [[0.7, -1, 0.75], [0, 0, 1]],
+  lathe: [[0, -1, 0], [-1, 0, 0]],
+  backlathe: [[0, 1, 0], [1, 0, 0]],
+});
+
+/** @typedef {import("./data.js").Chunk} Chunk */
+/** @typedef {{cut: THREE.LineSegments, rapid: THREE.LineSegments, chunk: Chunk, moves: {cut: Uint32Array, rapid: Uint32Array}}} Piece */
+
+export class Scene {
+  /** @type {Piece[]} */
+  #pieces = [];
+  #frame = 0;
+  #lastFrame = 0;
+  #trailCount = 0;
+  visible = true;
+
+  /** @param {HTMLElement} place @param {import("./data.js").PathData} data */
+  constructor(place, data) {
+    this.data = data;
+    this.place = place;
+    this.colouring = "kind";
+    this.showRapids = true;
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, powerPreference: "low-power" });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    place.append(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -FAR, FAR);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.draw());
+    this.lines = new THREE.Group();
+    this.marks = new THREE.Group();
+    this.scene.add(this.lines, this.marks);
+    this.#makeTool();
+    this.#makeTrail();
+    this.#makeOverlays();
+    this.#makeLimits();
+    this.setTheme();
+    new ResizeObserver(() => this.#resize()).observe(place);
+    this.#resize();
+    this.view("p");
+  }
+
+  // ---- things that are always there ----
+
+  #makeTool() {
+    const cone = new THREE.ConeGeometry(0.5, 1.6, 24);
+    cone.rotateX(-Math.PI / 2);
+    cone.translate(0, 0, 0.8);
+    this.tool = new THREE.Mesh(cone, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.85 }));
+    this.cursor = new THREE.Mesh(new THREE.SphereGeometry(0.35, 16, 12), new THREE.MeshBasicMaterial());
+    this.cursor.visible = false;
+    this.origin = axesCross();
+    this.marks.add(this.tool, this.cursor, this.origin);
+  }
+
+  #makeTrail() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(TRAIL_POINTS * 3), 3));
+    geometry.setDrawRange(0, 0);
+    this.trail = new THREE.Line(geometry, new THREE.LineBasicMaterial());
+    this.trail.frustumCulled = false;
+    this.marks.add(this.trail);
+  }
+
+  #makeOverlays() {
+    const overlay = () => {
+      const lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ depthTest: false }));
+      lines.renderOrder = 2;
+      this.marks.add(lines);
+      return lines;
+    };
+    this.selected = overlay();
+    this.outside = overlay();
+  }
+
+  #makeLimits() {
+    this.limits = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ transparent: true, opacity: 0.6 }));
+    this.limits.visible = false;
+    this.marks.add(this.limits);
+  }
+
+  /** Take the colours of the page's theme. */
+  setTheme() {
+    const style = getComputedStyle(document.documentElement);
+    const colour = (/** @type {string} */ name) => new THREE.Color(style.getPropertyValue(name).trim());
+    this.dark = document.documentElement.dataset.theme !== "light";
+    const paint = (/** @type {any} */ object, /** @type {string} */ name) => object.material.color.copy(colour(name));
+    paint(this.tool, "--warn");
+    paint(this.cursor, "--focus");
+    paint(this.trail, "--danger");
+    paint(this.selected, "--focus");
+    paint(this.outside, "--danger");
+    paint(this.limits, "--muted");
+    this.recolour();
+  }
+
+  // ---- the path ----
+
+  clear() {
+    for (const piece of this.#pieces) {
+      this.lines.remove(piece.cut, piece.rapid);
+      piece.cut.geometry.dispose();
+      piece.rapid.geometry.dispose();
+    }
+    this.#pieces = [];
+    this.select(0);
+    this.showOutside([]);
+    this.cursor.visible = false;
+    this.draw();
+  }
+
+  /** @param {Chunk} chunk */
+  add(chunk) {
+    const cuts = [];
+    const rapids = [];
+    for (let n = 0; n < chunk.count; n += 1) {
+      if (chunk.kind[n] === KIND.JUMP) continue;
+      (chunk.kind[n] === KIND.RAPID ? rapids : cuts).push(n);
+    }
+    const moves = { cut: Uint32Array.from(cuts), rapid: Uint32Array.from(rapids) };
+    const piece = { chunk, moves, cut: this.#segments(chunk, moves.cut, 1), rapid: this.#segments(chunk, moves.rapid, 0.45) };
+    piece.rapid.visible = this.showRapids;
+    this.#pieces.push(piece);
+    this.lines.add(piece.cut, piece.rapid);
+    this.#paint(piece);
+    this.draw();
+  }
+
+  /** @param {Chunk} chunk @param {Uint32Array} moves @param {number} opacity */
+  #segments(chunk, moves, opacity) {
+    const positions = new Float32Array(moves.length * 6);
+    moves.forEach((n, k) => putSegment(positions, k * 6, chunk, n));
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(moves.length * 6), 3, true));
+    return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity }));
+  }
+
+  /** @param {Piece} piece */
+  #paint(piece) {
+    for (const part of /** @type {const} */ (["cut", "rapid"])) {
+      const attribute = piece[part].geometry.getAttribute("color");
+      const colours = /** @type {Uint8Array} */ (attribute.array);
+      piece.moves[part].forEach((n, k) => {
+        const rgb = colourOf(this.colouring, piece.chunk, n, this.data.feedRange, this.dark);
+        for (let at = 0; at < 6; at += 1) colours[k * 6 + at] = rgb[at % 3];
+      });
+      attribute.needsUpdate = true;
+    }
+  }
+
+  /** @param {string} [colouring] `kind`, `feed` or `tool` */
+  recolour(colouring = this.colouring) {
+    this.colouring = colouring;
+    for (const piece of this.#pieces) this.#paint(piece);
+    this.draw();
+  }
+
+  /** @param {boolean} on */
+  setRapids(on) {
+    this.showRapids = on;
+    for (const piece of this.#pieces) piece.rapid.visible = on;
+    this.draw();
+  }
+
+  /** Highlight the moves of a program line. @param {number} line 0: none */
+  select(line) {
+    this.#overlay(this.selected, (one) => line > 0 && one === line);
+  }
+
+  /** Mark the moves of lines that leave the machine. @param {number[]} lines */
+  showOutside(lines) {
+    const wanted = new Set(lines);
+    this.#overlay(this.outside, (line) => wanted.has(line));
+  }
+
+  /** @param {THREE.LineSegments} overlay @param {(line: number) => boolean} wanted */
+  #overlay(overlay, wanted) {
+    /** @type {number[]} */
+    const positions = [];
+    this.data.forLines(wanted, (chunk, n) => putSegment(positions, positions.length, chunk, n));
+    overlay.geometry.dispose();
+    overlay.geometry = new THREE.BufferGeometry();
+    overlay.geometry.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
+    overlay.visible = positions.length > 0;
+    this.draw();
+  }
+
+  /** Program line of the move under a point of the screen. @param {number} x @param {number} y CSS pixels in the canvas @returns {number} 0: none */
+  pick(x, y) {
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    const ray = new THREE.Raycaster();
+    ray.params.Line.threshold = PICK_PIXELS * this.#unitsPerPixel();
+    ray.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+    for (const part of /** @type {const} */ (["cut", "rapid"])) {
+      const hits = this.#pieces.filter((piece) => piece[part].visible).flatMap((piece) => ray.intersectObject(piece[part]).map((hit) => ({ hit, piece })));
+      hits.sort((a, b) => a.hit.distance - b.hit.distance);
+      if (hits.length) return hits[0].piece.chunk.line[hits[0].piece.moves[part][(hits[0].hit.index ?? 0) >> 1]];
+    }
+    return 0;
+  }
+
+  // ---- the machine ----
+
+  /** @param {ArrayLike<number>} tip @param {ArrayLike<number>} origin of the work system */
+  setTool(tip, origin) {
+    this.tool.position.set(tip[0], tip[1], tip[2]);
+    this.origin.position.set(origin[0], origin[1], origin[2]);
+    this.draw();
+  }
+
+  /** @param {ArrayLike<number>} tip */
+  addTrail(tip) {
+    const attribute = this.trail.geometry.getAttribute("position");
+    if (this.#trailCount === TRAIL_POINTS) {
+      attribute.array.copyWithin(0, TRAIL_POINTS / 2 * 3); // the older half goes
+      this.#trailCount = TRAIL_POINTS / 2;
+    }
+    attribute.setXYZ(this.#trailCount, tip[0], tip[1], tip[2]);
+    this.#trailCount += 1;
+    attribute.needsUpdate = true;
+    this.trail.geometry.setDrawRange(0, this.#trailCount);
+    this.draw();
+  }
+
+  clearTrail() {
+    this.#trailCount = 0;
+    this.trail.geometry.setDrawRange(0, 0);
+    this.draw();
+  }
+
+  /** Mark a point of the forecast. @param {ArrayLike<number> | null} point */
+  setCursor(point) {
+    this.cursor.visible = point !== null;
+    if (point) this.cursor.position.set(point[0], point[1], point[2]);
+    this.draw();
+  }
+
+  /** @param {number[]} low @param {number[]} high */
+  setLimits(low, high) {
+    this.limits.visible = [...low, ...high].every((value) => Number.isFinite(value) && Math.abs(value) < FAR);
+    this.limits.scale.set(...size(low, high));
+    this.limits.position.set(...middle(low, high));
+    this.draw();
+  }
+
+  // ---- the camera ----
+
+  /** @param {string} name of VIEWS */
+  view(name) {
+    const [from, up] = VIEWS[name];
+    const target = this.controls.target;
+    this.camera.up.set(up[0], up[1], up[2]);
+    this.camera.position.set(target.x + from[0] * 1000, target.y + from[1] * 1000, target.z + from[2] * 1000);
+    this.controls.dispose(); // it keeps the up vector that it was made with
+    const made = new OrbitControls(this.camera, this.renderer.domElement);
+    made.enableDamping = false;
+    made.target.copy(target);
+    made.addEventListener("change", () => this.draw());
+    this.controls = made;
+    made.update();
+    this.draw();
+  }
+
+  /** Show a box in full. @param {number[]} low @param {number[]} high */
+  fit(low, high) {
+    const centre = middle(low, high);
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    this.controls.target.set(...centre);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.camera.updateMatrixWorld();
+    const inverse = this.camera.matrixWorld.clone().invert();
+    let [width, height] = [0, 0];
+    for (let corner = 0; corner < 8; corner += 1) {
+      const point = new THREE.Vector3(...[0, 1, 2].map((axis) => ((corner >> axis) & 1 ? high[axis] : low[axis])));
+      point.applyMatrix4(inverse);
+      width = Math.max(width, Math.abs(point.x));
+      height = Math.max(height, Math.abs(point.y));
+    }
+    const { clientWidth, clientHeight } = this.place;
+    const half = 1.12 * Math.max(height, (width * clientHeight) / Math.max(clientWidth, 1), 1e-3);
+    this.camera.zoom = 1;
+    this.camera.top = half;
+    this.#resize();
+    this.controls.update();
+  }
+
+  #unitsPerPixel() {
+    return (this.camera.top - this.camera.bottom) / this.camera.zoom / Math.max(this.place.clientHeight, 1);
+  }
+
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height);
+    const half = this.camera.top;
+    Object.assign(this.camera, { bottom: -half, left: (-half * width) / height, right: (half * width) / height });
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Ask for a picture; several requests make one. */
+  draw() {
+    if (this.#frame || !this.visible) return;
+    const wait = Math.max(0, FRAME_MS - (performance.now() - this.#lastFrame));
+    this.#frame = window.setTimeout(() => requestAnimationFrame(() => this.#render()), wait);
+  }
+
+  #render() {
+    this.#frame = 0;
+    this.#lastFrame = performance.now();
+    const mark = this.#unitsPerPixel() * 16; // marks keep their size on the screen
+    for (const object of [this.tool, this.cursor]) object.scale.setScalar(mark);
+    this.origin.scale.setScalar(mark * 2.5);
+    this.renderer.render(this.scene, this.camera);
+  }
+}
+
+/** Write start and end of a move. @param {number[] | Float32Array} positions @param {number} at @param {Chunk} chunk @param {number} n */
+function putSegment(positions, at, chunk, n) {
+  const start = startOf(chunk, n);
+  for (let axis = 0; axis < 3; axis += 1) {
+    positions[at + axis] = start[axis];
+    positions[at + 3 + axis] = chunk.end[n * AXES + axis];
+  }
+}
+
+/** @param {number[]} low @param {number[]} high @returns {[number, number, number]} */
+const middle = (low, high) => [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
+/** @param {number[]} low @param {number[]} high @returns {[number, number, number]} */
+const size = (low, high) => [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
+
+/** X red, Y green, Z blue. */
+function axesCross() {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1], 3));
+  const colours = ["#f0506e", "#3ec46d", "#4b8df8"].flatMap((text) => [...new THREE.Color(text).toArray(), ...new THREE.Color(text).toArray()]);
+  geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
+  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
+}

@@ -1,0 +1,185 @@
+"""A client of the web display for tests: what a page does over /ws, in calls that block until something is so."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+import msgpack
+
+from nml import namespace
+from tests.support.machine import PATIENCE, Run, wait_until
+
+
+class Refused(Exception):
+    """An error frame; ``code`` and the whole ``frame``."""
+
+    def __init__(self, frame: dict[str, Any]) -> None:
+        self.frame = frame
+        self.code = frame["code"]
+        super().__init__(f"{frame['code']}: {frame['text']}")
+
+
+def web_port(run: Run) -> int:
+    """The port of a machine's web display, waited for."""
+    path = namespace.runtime_dir() / "web.port"
+    wait_until(lambda: run.process.poll() is not None or (path.exists() and path.read_text().strip()), "web display")
+    assert run.process.poll() is None, run.errors
+    return int(path.read_text())
+
+
+class WebClient:
+    """One page: ``state`` is what it has been told, ``call`` asks for something."""
+
+    def __init__(self, port: int, *, token: str | None = None, name: str = "test", origin: str | None = None) -> None:
+        self.base = f"http://127.0.0.1:{port}"
+        self.origin = origin or self.base
+        self.token = token
+        self.name = name
+        self.hello: dict[str, Any] = {}
+        self.state: dict[str, Any] = {}
+        self.frames: list[dict[str, Any]] = []
+        self.messages: list[dict[str, Any]] = []
+        self.close_code: int | None = None
+        self._answers: dict[int, Future[Any]] = {}
+        self._next = 1
+        self._beating: set[int] = set()
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+
+    def __enter__(self) -> WebClient:
+        self._thread.start()
+        self.run(self._connect())
+        return self
+
+    def __exit__(self, *exc_info: object) -> None:
+        self.run(self._close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def run(self, work: Any) -> Any:
+        """Wait for a coroutine in the client's loop."""
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE)
+
+    async def _connect(self) -> None:
+        self.session = aiohttp.ClientSession()
+        self.socket = await self.session.ws_connect(f"{self.base}/ws", headers={"Origin": self.origin}, max_msg_size=0)
+        hello = {"t": "hello", "name": self.name} | ({"token": self.token} if self.token else {})
+        await self.socket.send_bytes(msgpack.packb(hello))
+        message = await self.socket.receive(PATIENCE)
+        if message.type is not aiohttp.WSMsgType.BINARY:
+            self.close_code = self.socket.close_code
+            await self.session.close()
+            raise ConnectionError(f"closed with {self.close_code}: {message.extra}")
+        self._take(msgpack.unpackb(message.data))
+        self._reader = asyncio.create_task(self._read())
+        self._beater = asyncio.create_task(self._beat())
+
+    async def _close(self) -> None:
+        if not self.session.closed:
+            self._reader.cancel()
+            self._beater.cancel()
+            await self.socket.close()
+            await self.session.close()
+
+    async def _read(self) -> None:
+        async for message in self.socket:
+            self._take(msgpack.unpackb(message.data))
+        self.close_code = self.socket.close_code
+
+    async def _beat(self) -> None:
+        while True:
+            for number in list(self._beating):
+                await self.socket.send_bytes(msgpack.packb({"t": "beat", "jog": number}))
+            await asyncio.sleep(0.05)
+
+    def _take(self, frame: dict[str, Any]) -> None:
+        match frame["t"]:
+            case "hello":
+                self.hello, self.state = frame, dict(frame["status"])
+            case "status":
+                self.state.update(frame["s"])
+            case "message":
+                self.messages.append(frame)
+            case "result":
+                self._answers.pop(frame["id"]).set_result(frame["ok"])
+            case "error":
+                self._answers.pop(frame["id"]).set_exception(Refused(frame))
+            case _:
+                self.frames.append(frame)
+
+    # --- what tests use --------------------------------------------------------------------------------------------
+
+    def start(self, method: str, **arguments: Any) -> Future[Any]:
+        """A call that is not waited for."""
+        answer: Future[Any] = Future()
+        number, self._next = self._next, self._next + 1
+        self._answers[number] = answer
+        self.run(self.socket.send_bytes(msgpack.packb({"t": "call", "id": number, "m": method, "a": arguments})))
+        return answer
+
+    def call(self, method: str, **arguments: Any) -> Any:
+        """A call and its value; Refused for an error."""
+        return self.start(method, **arguments).result(PATIENCE)
+
+    def send_raw(self, data: bytes) -> None:
+        self.run(self.socket.send_bytes(data))
+
+    def wait(self, condition: Callable[[dict[str, Any]], object], what: str, timeout: float = PATIENCE) -> None:
+        """Wait until the state fulfils a condition."""
+        wait_until(lambda: condition(self.state), what, timeout)
+
+    def hold(self, jog: int) -> None:
+        """Keep the jog button down."""
+        self._beating.add(jog)
+
+    def let_go(self, jog: int) -> None:
+        """No beats any more."""
+        self._beating.discard(jog)
+
+    def cut(self) -> None:
+        """The network is gone: nothing is sent or read any more, and nobody says goodbye."""
+        self._beating.clear()
+        transport = self.socket.get_extra_info("socket")
+        assert transport is not None
+        self.run(self._abandon())
+
+    async def _abandon(self) -> None:
+        self._reader.cancel()
+        self._beater.cancel()
+        transport = self.socket._conn.transport  # type: ignore[union-attr]
+        transport.pause_reading()
+
+    def ready(self) -> None:
+        """Take the controls, switch on, home all."""
+        self.call("control.take")
+        self.call("machine.estop_reset")
+        self.call("machine.power", on=True)
+        self.call("home", joint=-1)
+        self.wait(lambda state: state["all_homed"], "homed")
+
+    def upload(self, name: str, text: str, replace: bool = False) -> int:
+        """Send a program; the HTTP status."""
+        return int(self.run(self._post(name, text.encode(), replace)))
+
+    async def _post(self, name: str, data: bytes, replace: bool, **headers: str) -> int:
+        sent = {"Origin": self.origin, "X-Requested-With": "linuxcnc-web"}
+        if self.token:
+            sent["Authorization"] = f"Bearer {self.token}"
+        query = {"name": name, "replace": str(int(replace))}
+        async with self.session.post(f"{self.base}/upload", params=query, data=data, headers=sent | headers) as answer:
+            return answer.status
+
+
+def copy_programs(folder: Path, **programs: str) -> Path:
+    """A program folder with these programs (name without .ngc: text)."""
+    folder.mkdir(exist_ok=True)
+    for name, text in programs.items():
+        (folder / f"{name}.ngc").write_text(text)
+    return folder
