@@ -51,20 +51,20 @@ export function timeline(data, point) {
   };
 }
 
-/** Walk through moves and forecast together; both are in the order of execution. @param {import("./data.js").PathData} data */
+/**
+ * Walk through moves and forecast together. Both are in the order of execution, so the next move belongs to this entry or
+ * to a later one.
+ * @param {import("./data.js").PathData} data
+ */
 function movesOfEntries(data) {
   const { lines } = /** @type {NonNullable<typeof data.forecast>} */ (data.forecast);
   const found = new Int32Array(lines.length);
   const lineOf = new Uint32Array(data.moves);
   for (const chunk of data.chunks) lineOf.set(chunk.line, chunk.first);
-  let at = 0;
+  let next = 1; // the first entry of the path is the start, not a move
   for (let entry = 0; entry < lines.length; entry += 1) {
-    const next = lineOf.indexOf(lines[entry], at);
-    if (next >= 0) {
-      at = next;
-      while (at + 1 < lineOf.length && lineOf[at + 1] === lines[entry]) at += 1;
-    }
-    found[entry] = at;
+    while (next < lineOf.length && lineOf[next] === lines[entry]) next += 1;
+    found[entry] = Math.max(next - 1, 0);
   }
   return found;
 }
