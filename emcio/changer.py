@@ -54,9 +54,10 @@ class Changer:
         if index < 0:
             raise ValueError(f"T{toolno} is not in the tool table; add it, or reload the table")
         self._announce(index, toolno)
-        if self.store.random and index == 0:  # it is in the spindle already
+        if index == 0:
             self.prepared = 0
-            return
+            if self.store.random:  # it is in the spindle already
+                return
         self._target = index
         self._begin("tool-prepare")
 
@@ -82,10 +83,10 @@ class Changer:
         entries = self.store.entries
         if not 0 <= index < len(entries) or (index and entries[index].toolno == NO_TOOL):
             raise ValueError(f"index {index} of the tool table holds no tool")
-        if index == 0 and not self.store.random:
-            self.from_pocket = 0
         if index or not self.store.random:
             self._put(index)
+        if not self.store.in_spindle:
+            self.from_pocket = 0
         self.pins["tool-from-pocket"] = self.from_pocket
 
     def poll(self) -> None:
@@ -103,8 +104,9 @@ class Changer:
         if self._waiting == "tool-prepare":
             self.prepared = self._target
         else:
-            self.from_pocket = self.store.pocket_of(self._target)
+            pocket = self.store.pocket_of(self._target)
             self._put(self._target)
+            self.from_pocket = pocket if self.store.in_spindle else 0
             self.pins["tool-from-pocket"] = self.from_pocket
             self.prepared = NONE_PREPARED
             self._announce(0, 0)

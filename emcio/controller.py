@@ -198,6 +198,7 @@ class IoController:
     def _load_table(self, command: EMC_TOOL_LOAD_TOOL_TABLE) -> None:
         for remark in self.source.load(self.store, command.file):
             self._complain(remark)
+        self.pins["tool-number"] = self.store.in_spindle
         self.changer.table_changed = True
 
     def _estop_on(self, command: Message) -> None:

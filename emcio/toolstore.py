@@ -1,9 +1,9 @@
 """The tools in memory: which are in the table, which is in the spindle, and what a change does to them.
 
-Entry 0 is the spindle. On a nonrandom changer the other entries follow each other as the file lists them (their
-pocket numbers are only remarks of the user), a change **copies** the tool into entry 0, and tool 0 means an empty
-spindle. On a random changer the index of an entry is its pocket, a change **swaps** it with entry 0, and tool 0 is
-a tool like any other.
+Entry 0 is the spindle; its numbers are -1 as long as nobody knows of a tool there. On a nonrandom changer the other
+entries follow each other as the file lists them (their pocket numbers are only remarks of the user), a change
+**copies** the tool into entry 0, and tool 0 means an empty spindle. On a random changer the index of an entry is its
+pocket, a change **swaps** it with entry 0, and tool 0 is a tool like any other.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from emcio.tooltable import Tool, ToolFile
 from nml.emc.tooltable import CANON_POCKETS_MAX, EMC_TOOL_TABLE
 
-NO_TOOL = -1
+NO_TOOL = NO_POCKET = -1
 
 
 class ToolStore:
@@ -23,20 +23,22 @@ class ToolStore:
     def __init__(self, random: bool) -> None:
         self.random = random
         self.entries: list[Tool] = [Tool() for _ in range(CANON_POCKETS_MAX)]
+        self.entries[0] = Tool(pocketno=NO_POCKET)
         self.last_index = 0
-        self.empty_spindle()
 
     def empty_spindle(self) -> None:
-        """Nothing is in the spindle."""
-        self.entries[0] = Tool(toolno=NO_TOOL if self.random else 0)
+        """The tool was taken out of a nonrandom spindle."""
+        self.entries[0] = Tool(toolno=0)
 
     def load(self, tools: Iterable[Tool], file: ToolFile | None = None) -> list[str]:
         """Take over what the file or the data base lists; the tool in a nonrandom spindle gets its new values.
 
+        A random changer's file lists the spindle, too: as pocket 0, or it is empty.
+
         Tools that this kind of changer cannot hold are left out; the result says which and why.
         """
         entries = [Tool() for _ in range(CANON_POCKETS_MAX)]
-        entries[0] = self.entries[0]
+        entries[0] = Tool(pocketno=NO_POCKET) if self.random else self.entries[0]
         taken: dict[int, int] = {}
         remarks = []
         for tool in tools:

@@ -54,6 +54,8 @@ class TaskCanon(WorldModel):
         self._block_before = self.block
         self.tool_offset = self.coords.tool
         """The tool offset as far as the program was read: X to W, machine units."""
+        self.tool_data_changed = False
+        """Did the program change the tool table since the interpreter took it over?"""
         self.log_path: Path | None = None
 
     def begin_block(self, line: int, file: str, level: int) -> None:
@@ -213,7 +215,15 @@ class TaskCanon(WorldModel):
         self._put_io(op.io_command_complete, EMC_TOOL_START_CHANGE())
 
     def change_tool(self) -> None:
+        self._go_to_change()
         self._put_io(op.io_command_complete, EMC_TOOL_LOAD())
+
+    def _go_to_change(self) -> None:
+        """To [EMCIO]TOOL_CHANGE_POSITION, with the axes that it names."""
+        place = self.config.tool_change_position
+        if place:
+            there = (*place, *self.end_point[len(place) :])
+            self.straight_traverse(self.line_number, *self.coords.to_program(*there))
 
     def change_tool_number(self, pocket: int) -> None:
         self._put_io(op.io_command_complete, EMC_TOOL_SET_NUMBER(tool=pocket))
@@ -231,9 +241,11 @@ class TaskCanon(WorldModel):
             orientation=orientation,
         )
         self._put_io(op.io_command_complete, command)
+        self.tool_data_changed = True
 
     def reload_tooldata(self) -> None:
         self._put_io(op.io_command_complete, EMC_TOOL_LOAD_TOOL_TABLE())
+        self.tool_data_changed = True
 
     def _put_io(self, operation: Operation, command: Command) -> None:
         self.put(operation, command)

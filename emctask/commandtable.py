@@ -26,10 +26,8 @@ Handler = Callable[["Task", Any], None]
 MANUAL = frozenset({Mode.MANUAL})
 MDI = frozenset({Mode.MDI})
 AUTO = frozenset({Mode.AUTO})
-PROGRAMMED = frozenset({Mode.MDI, Mode.AUTO})
 ANY = frozenset(Mode)
 
-STATE_NAMES = {State.ESTOP: "in E-stop", State.ESTOP_RESET: "off", State.OFF: "off", State.ON: "on"}
 MODE_NAMES = {Mode.MANUAL: "manual", Mode.MDI: "MDI", Mode.AUTO: "auto"}
 
 
@@ -85,12 +83,15 @@ def refuse(types: Iterable[type[Message]], reason: str) -> None:
         REFUSALS[message.TYPE_ID] = reason
 
 
-def check(rule: Rule, name: str, state: State, mode: Mode, interp: Interp) -> None:
-    """Refused with the reason when a command is not allowed now."""
+def check(rule: Rule, message: Message, state: State, mode: Mode, interp: Interp) -> None:
+    """Refused with the reason, in LinuxCNC's words, when a command is not allowed now."""
+    name = type(message).__name__
     if rule.on and state is not State.ON:
-        raise Refused(f"{name} needs the machine out of E-stop and turned on; it is {STATE_NAMES[state]}")
-    if mode not in rule.modes:
-        allowed = " or ".join(MODE_NAMES[m] for m in sorted(rule.modes))
-        raise Refused(f"{name} can only be done in {allowed} mode; this is {MODE_NAMES[mode]} mode")
-    if rule.idle and interp is not Interp.IDLE:
-        raise Refused(f"{name} can only be done while no program runs; the interpreter is {interp.name.lower()}")
+        raise Refused(f"command ({name}) cannot be executed until the machine is out of E-stop and turned on")
+    if mode in rule.modes and (interp is Interp.IDLE or not rule.idle):
+        return
+    if rule.modes == MDI and mode is Mode.MANUAL:
+        raise Refused("Must be in MDI mode to issue MDI command")
+    if mode is Mode.AUTO:
+        raise Refused(f"can't do that ({name}) in auto mode with the interpreter {interp.name.lower()}")
+    raise Refused(f"can't do that ({name}:{message.TYPE_ID}) in {MODE_NAMES[mode]} mode")

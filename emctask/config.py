@@ -7,6 +7,7 @@ in machine units (lu), angles in machine angle units (deg by default), times in 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -98,6 +99,8 @@ class SpindleConfig:
     max_forward: float
     min_reverse: float
     max_reverse: float
+    increment: float
+    """By how much an operator's order makes it faster or slower."""
 
 
 @dataclass(slots=True)
@@ -129,6 +132,8 @@ class MachineConfig:
     on_abort: str
     debug: int
     random_toolchanger: bool
+    tool_change_position: tuple[float, ...]
+    """X Y Z, X to C or X to W, machine coordinates; empty: tools are changed where the machine stands."""
     comm_timeout_s: float
     max_axis_velocities: list[float] = field(default_factory=list)
     max_axis_accelerations: list[float] = field(default_factory=list)
@@ -157,7 +162,7 @@ def read_config(ini: IniFile) -> MachineConfig:
         no_force_homing=ini.boolean("TRAJ", "NO_FORCE_HOMING", False),
         no_probe_jog_error=ini.boolean("TRAJ", "NO_PROBE_JOG_ERROR", False),
         no_probe_home_error=ini.boolean("TRAJ", "NO_PROBE_HOME_ERROR", False),
-        world_home=_world_home(ini),
+        world_home=(*_point(ini, "TRAJ", "HOME", range(10)), *[0.0] * 9)[:9],
         arc_blend=(
             int(ini.boolean("TRAJ", "ARC_BLEND_ENABLE", True)),
             int(ini.boolean("TRAJ", "ARC_BLEND_FALLBACK_ENABLE", False)),
@@ -165,13 +170,14 @@ def read_config(ini: IniFile) -> MachineConfig:
             ini.real("TRAJ", "ARC_BLEND_RAMP_FREQ", 100.0, minimum=0.0),
         ),
         cycle_s=ini.real("TASK", "CYCLE_TIME", 0.01, maximum=1.0),
-        mdi_queue=ini.integer("TASK", "MDI_QUEUED_COMMANDS", 10, minimum=1),
+        mdi_queue=ini.integer("TASK", "MDI_QUEUED_COMMANDS", 10_000, minimum=1),
         startup_code=ini.find("RS274NGC", "RS274NGC_STARTUP_CODE", ""),
         program_prefix=ini.path("DISPLAY", "PROGRAM_PREFIX", ini.resolve("nc_files")),
         m_code_folders=_m_code_folders(ini),
         on_abort=ini.find("RS274NGC", "ON_ABORT_COMMAND", ""),
         debug=_as_int32(ini.integer("EMC", "DEBUG", 0)),
         random_toolchanger=ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False),
+        tool_change_position=_point(ini, "EMCIO", "TOOL_CHANGE_POSITION", (0, 3, 6, 9)),
         comm_timeout_s=ini.real("EMCMOT", "COMM_TIMEOUT", 1.0, minimum=0.01),
         max_axis_velocities=[axes[a].max_velocity if a in axes else UNLIMITED for a in range(9)],
         max_axis_accelerations=[axes[a].max_acceleration if a in axes else UNLIMITED for a in range(9)],
@@ -294,18 +300,21 @@ def _spindle(ini: IniFile, number: int) -> SpindleConfig:
         max_forward=high,
         min_reverse=speed(("MIN_REVERSE_VELOCITY",), low),
         max_reverse=speed(("MAX_REVERSE_VELOCITY",), high),
+        increment=speed(("INCREMENT",), 100.0),
     )
 
 
-def _world_home(ini: IniFile) -> tuple[float, ...]:
-    text = ini.find("TRAJ", "HOME", "")
+def _point(ini: IniFile, section: str, key: str, lengths: Collection[int]) -> tuple[float, ...]:
+    """Numbers for the first axes of X to W; empty where there is no such entry."""
+    text = ini.find(section, key, "")
     try:
-        values = [float(word) for word in text.split()]
+        values = tuple(float(word) for word in text.replace(",", " ").split())
     except ValueError:
-        raise ini.error("TRAJ", "HOME", f"{text!r}: up to nine numbers are needed, X to W") from None
-    if len(values) > 9:
-        raise ini.error("TRAJ", "HOME", f"{len(values)} numbers; at most nine are allowed, X to W")
-    return tuple(values + [0.0] * (9 - len(values)))
+        raise ini.error(section, key, f"{text!r}: up to nine numbers are needed, X to W") from None
+    if len(values) not in lengths:
+        allowed = ", ".join(map(str, lengths))
+        raise ini.error(section, key, f"{len(values)} numbers; {allowed} are allowed, from X on")
+    return values
 
 
 def _m_code_folders(ini: IniFile) -> list[Path]:

@@ -42,6 +42,8 @@ class Operation:
     run: Callable[[Sequencer, Any], None]
     before: Exec = Exec.DONE
     after: Exec = Exec.DONE
+    moves: bool = False
+    """Does it move the machine? The line of the last one that does is the current line."""
 
 
 Entry = tuple[Operation, Any, int, Block]

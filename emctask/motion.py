@@ -48,6 +48,7 @@ class MotionClient:
         self._blank = bytes(self._command.data)
         self._in_flight: deque[int] = deque()
         self._sent = 0
+        """The last command that somebody waits for: a sign of life is not."""
         self._last_sent_at = clock.host_now()
         self._refused = 0
         self.known = False
@@ -156,9 +157,11 @@ class MotionClient:
         self._in_flight.append(self._write())
 
     def _write(self) -> int:
-        self._sent = self._commands.write(self._command)
+        serial = self._commands.write(self._command)
         self._last_sent_at = clock.host_now()
-        return self._sent
+        if self._command.command != MotCommand.HEARTBEAT:
+            self._sent = serial
+        return serial
 
     def beat(self) -> None:
         """Tell motion that task is alive, if nothing else did lately."""

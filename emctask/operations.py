@@ -23,11 +23,11 @@ IO = Exec.WAITING_FOR_IO
 MOTION_AND_IO = Exec.WAITING_FOR_MOTION_AND_IO
 
 
-def operation(before: Exec = DONE, after: Exec = DONE) -> Callable[[Run], Operation]:
+def operation(before: Exec = DONE, after: Exec = DONE, moves: bool = False) -> Callable[[Run], Operation]:
     """Make an Operation of a function."""
 
     def make(run: Run) -> Operation:
-        return Operation(run.__name__, run, before, after)
+        return Operation(run.__name__, run, before, after, moves)
 
     return make
 
@@ -35,20 +35,20 @@ def operation(before: Exec = DONE, after: Exec = DONE) -> Callable[[Run], Operat
 # --- Motion
 
 
-@operation()
+@operation(moves=True)
 def move(machine: Sequencer, packed: bytes) -> None:
     """A straight move or an arc, packed with ``emctask.motion.MOVE``."""
     machine.motion.send_move(packed, line=machine.current_line, wait_for_spindle_at_speed=machine.take_spindle_wait())
 
 
-@operation(before=MOTION_AND_IO, after=MOTION)
+@operation(before=MOTION_AND_IO, after=MOTION, moves=True)
 def probe(machine: Sequencer, payload: tuple[bytes, int]) -> None:
     """(packed move, probe type)."""
     machine.motion.send(MotCommand.CLEAR_PROBE_FLAGS)
     machine.motion.send_move(payload[0], line=machine.current_line, probe_type=payload[1])
 
 
-@operation(before=MOTION, after=MOTION)
+@operation(before=MOTION, after=MOTION, moves=True)
 def rigid_tap(machine: Sequencer, payload: tuple[bytes, float]) -> None:
     """(packed move, scale of the way back)."""
     machine.motion.send_move(payload[0], line=machine.current_line, scale=payload[1])
@@ -163,7 +163,7 @@ def io_command_at_rest(machine: Sequencer, command: Any) -> None:
     machine.io.send(command)
 
 
-@operation(before=MOTION_AND_IO, after=IO)
+@operation(before=MOTION_AND_IO, after=MOTION_AND_IO)
 def io_command_complete(machine: Sequencer, command: Any) -> None:
     """Sent at rest, and nothing goes on before io has finished: tool change."""
     machine.io.send(command)

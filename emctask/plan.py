@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 SLICE_S = 0.004  # host time that reading ahead may take before task looks at its other duties
 BLOCKS_PER_LOOK = 32  # blocks between two looks at the clock
 
+INTERP_ERROR = 5  # LinuxCNC's number, for stat.interpreter_errcode
+TYPED = "MDI"  # the file that the interpreter names for a line that was typed in
+
 MAY_OFFSET = re.compile(r"#|g0*(?:10|28\.1|30\.1|52|5[4-9]|92)|m0*(?:2|30)(?!\d)", re.IGNORECASE)
 """Words of a block after which the stored offsets may be others."""
 
@@ -75,7 +78,10 @@ class Plan:
         """Load a program; InterpError or ConfigError when it cannot be read."""
         self.interp.close()
         self.file = ""
+        self.interpreter_code = INTERP_ERROR
         self.interp.open(path)
+        self.interpreter_code = 0
+        self.sequencer.current_line = 0
         self.file = str(path)
 
     def close(self) -> None:
@@ -108,6 +114,7 @@ class Plan:
         self._before = self.canon.block = Block(self.file, 0)
         self.canon.end_block(self._current_modes(), self._offsets)
         self.sequencer.current_block = None
+        self.sequencer.current_line = 0
         self.at_end = False
         self.waiting_for_synch = False
         self.interpreter_code = 0
@@ -121,6 +128,11 @@ class Plan:
     def active(self) -> bool:
         """Is a program or an MDI line under way, be it only in the machine?"""
         return self.source is not Source.NOTHING
+
+    @property
+    def typed(self) -> bool:
+        """Is it an MDI line that is under way?"""
+        return self.source is Source.MDI
 
     def read_ahead(self) -> None:
         """Read until the list is full, the slice is over, or something must be waited for; InterpError ends it."""
@@ -207,6 +219,7 @@ class Plan:
         """Everything that was read is done: nothing is under way any more."""
         self.source = Source.NOTHING
         self.waiting_for_synch = False
+        self.must_synch |= self.canon.tool_data_changed
 
     # --- Agreement with the machine
 
@@ -218,7 +231,7 @@ class Plan:
         """The interpreter takes over position, tool and spindle from the machine, which must stand still."""
         self.interp.synch()
         self.waiting_for_synch = False
-        self.must_synch = False
+        self.must_synch = self.canon.tool_data_changed = False
         restore, self._restore = self._restore, None
         if restore is not None:
             self._bring_back(restore)
@@ -275,7 +288,11 @@ class Plan:
         self.interp.save_parameters()
 
     def describe(self, error: Exception) -> str:
-        """An interpreter's error for the operator: ``file:line:column: message``."""
-        if isinstance(error, InterpError) and error.place is None and self.source is Source.PROGRAM:
+        """An interpreter's error for the operator: ``file:line:column: message``; of a typed line the message."""
+        if not isinstance(error, InterpError):
+            return str(error)
+        self.interpreter_code = INTERP_ERROR
+        if error.place is None and self.source is Source.PROGRAM:
             return f"{self.file}:{self.interp.line}: {error.message}"
-        return str(error)
+        typed = error.place is not None and error.place.file == TYPED
+        return error.message if typed else str(error)

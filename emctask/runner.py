@@ -16,6 +16,7 @@ from emctask.sequencer import ExecutionError
 from nml.emc import EMC_TOOL_ABORT
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
 from nml.emc.emcmot import MotCommand
 from nml.errors import PyemcError
@@ -83,7 +84,7 @@ class Runner:
         if task.plan.active and not task.paused:
             self._guard(task.plan.read_ahead)
             if task.plan.active:
-                reads = task.plan.busy and not task.plan.waiting_for_synch
+                reads = task.plan.typed or (task.plan.busy and not task.plan.waiting_for_synch)
                 self._set(Interp.READING if reads else Interp.WAITING)
         self._step()
         try:
@@ -142,6 +143,7 @@ class Runner:
             task.failed = True
             return
         plan.finish()
+        task.mdi_text = ""
         self.stepping = False
         self.serial = 0
         task.canon.places.forget()
@@ -151,15 +153,19 @@ class Runner:
     # --- Pause, resume, step
 
     def pause(self) -> None:
-        """Motion holds, and nothing new begins."""
+        """Motion holds, and nothing new begins; in auto mode the loaded program is held before it has begun."""
         task = self._task
-        if task.paused or (task.interp_state is Interp.IDLE and task.motion.settled):
+        waits_to_run = task.mode is Mode.AUTO and task.plan.open_file
+        if task.paused or (task.interp_state is Interp.IDLE and task.motion.settled and not waits_to_run):
             return
         task.motion.send(MotCommand.PAUSE)
         self._hold()
+        if waits_to_run:
+            self._set(Interp.PAUSED)
 
     def pause_at_stop(self) -> None:
-        """The program stopped itself: motion stands already."""
+        """The program stopped itself: motion stands already, and says so."""
+        self._task.motion.send(MotCommand.PAUSE)
         self._hold()
 
     def _hold(self) -> None:
@@ -181,8 +187,7 @@ class Runner:
         task = self._task
         task.paused = False
         task.sequencer.held = False
-        if task.plan.active:
-            self._set(Interp.READING)
+        self._set(Interp.READING if task.plan.active else Interp.IDLE)
 
     def step(self) -> None:
         """Go on to the end of one block: of the moves that motion holds, or of the next block in the list."""
@@ -234,6 +239,7 @@ class Runner:
         self.serial = 0
         task.paused = False
         task.mdi_queue.clear()
+        task.mdi_text = ""
         task.sequencer.abort()
         task.motion.send(MotCommand.ABORT)
         self.stop_spindles()

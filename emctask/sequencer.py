@@ -110,7 +110,9 @@ class Sequencer:
                 self.exec_state = operation.before
                 return
             queue.popleft()
-            self.current_line, self.current_block = line, block
+            self.current_block = block
+            if operation.moves:
+                self.current_line = line
             operation.run(self, payload)
             if operation.after is not Exec.DONE:
                 self._after = self.exec_state = operation.after

@@ -82,12 +82,13 @@ class StatusWriter:
         t.programUnits = task.canon.coords.units
         executing = task.motion.status.id
         place = task.canon.places.at(executing) if executing else None
-        active = plan.active
-        t.motionLine = place.line if place else 0
-        t.currentLine = task.sequencer.current_line if active else 0
-        t.readLine = plan.interp.line if active else 0
-        t.callLevel = place.block.level if place else plan.interp.call_level
-        self._fill_modes((place.block.modes if place else None) or plan.modes)
+        t.currentLine = task.sequencer.current_line
+        if place or not t.currentLine:
+            t.motionLine = place.line if place else 0
+        t.readLine = plan.interp.line if plan.active else 0
+        block = place.block if place else task.sequencer.current_block if plan.active else None
+        t.callLevel = block.level if block else plan.interp.call_level
+        self._fill_modes((block.modes if block else None) or plan.modes)
         if task.offsets != self._offsets:
             self._offsets = dict(task.offsets)
             for name, value in self._offsets.items():

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from emctask import transitions
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.emc.emcmot import MotCommand
 
 if TYPE_CHECKING:
     from emctask.task import Task
@@ -19,6 +21,7 @@ class Supervisor:
         self._task = task
         self._lost: set[str] = set()
         self._in_error = False
+        self._all_homed = False
 
     def look(self) -> None:
         """React to whatever changed since the last cycle."""
@@ -28,6 +31,7 @@ class Supervisor:
             task.operator.from_motion(error, task.canon.places)
         self._refusals()
         self._state()
+        self._homed()
 
     def _partners(self) -> None:
         task = self._task
@@ -61,6 +65,15 @@ class Supervisor:
         before, task.state = task.state, state
         if before is State.ON:
             transitions.left_on(task, state)
+
+    def _homed(self) -> None:
+        """When the last joint is homed, jogs in manual mode move axes from then on."""
+        task = self._task
+        if task.mode is not Mode.MANUAL:
+            return
+        before, self._all_homed = self._all_homed, task.motion.all_homed
+        if self._all_homed and not before and task.state is State.ON:
+            task.motion.send(MotCommand.TELEOP)
 
     def _seen(self) -> State:
         """The state as motion and io show it."""

@@ -195,7 +195,7 @@ class Task:
             if rule is None:
                 reason = REFUSALS.get(message.TYPE_ID, "this controller does not know it")
                 raise Refused(f"{name} is refused: {reason}")
-            check(rule, name, self.state, self.mode, self.interp_state)
+            check(rule, message, self.state, self.mode, self.interp_state)
             log.debug("%r", message)
             rule.handler(self, message)
         except Refused as refusal:

@@ -14,6 +14,7 @@ from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.emc.constants import KINEMATICS_TYPE as Kinematics
 from nml.emc.emcmot import MotCommand, MotionState
 
 if TYPE_CHECKING:
@@ -70,9 +71,20 @@ def to_on(task: Task) -> None:
         return
     task.motion.send(MotCommand.ENABLE)
     task.io.send(EMC_LUBE_ON())
+    _resume_mode(task)
     complaint = "motion does not switch on; is motion.enable TRUE, and no joint at a limit or faulted?"
     task.expect(lambda: task.state is State.ON, complaint)
     task.plan.must_synch = True
+
+
+def _resume_mode(task: Task) -> None:
+    """The mode stays as it was while the machine was off, where motion can take it up without being homed anew."""
+    if task.mode is Mode.MANUAL:
+        return
+    if task.motion.all_homed or task.motion.status.kinematics_type == Kinematics.IDENTITY:
+        task.motion.send(MotCommand.COORD)
+    else:
+        task.mode = Mode.MANUAL
 
 
 def emergency_stop(task: Task, reason: Reason) -> None:
@@ -93,11 +105,10 @@ def shut_down(task: Task) -> None:
 def _switch_off(task: Task) -> None:
     task.motion.send(MotCommand.DISABLE)
     task.runner.stop_spindles()
-    task.io.send(EMC_LUBE_OFF())
 
 
 def left_on(task: Task, state: State) -> None:
-    """The machine is no longer on, by order or by itself: nothing may go on, and the mode falls back to manual."""
+    """The machine is no longer on, by order or by itself: nothing may go on."""
     if task.busy_with_program:
         task.runner.abort(Reason.AUX_ESTOP if state is State.ESTOP else Reason.TASK_STATE_NOT_ON)
     if state is State.ESTOP:
@@ -106,7 +117,6 @@ def left_on(task: Task, state: State) -> None:
         _switch_off(task)
     if any(joint.volatile_home for joint in task.config.joints):
         task.motion.send(MotCommand.JOINT_UNHOME, joint=UNHOME_VOLATILE)
-    task.mode = Mode.MANUAL
 
 
 def set_mode(task: Task, mode: int) -> None:
@@ -115,7 +125,7 @@ def set_mode(task: Task, mode: int) -> None:
         raise Refused(f"EMC_TASK_SET_MODE: {mode} is no mode; 1 manual, 2 auto, 3 MDI are")
     wanted = Mode(mode)
     if task.mode is Mode.AUTO and wanted is not Mode.AUTO and task.interp_state is not Interp.IDLE:
-        raise Refused("the mode cannot be changed while a program runs; abort it first")
+        raise Refused("Can't switch mode while mode is AUTO and interpreter is not IDLE")
     if wanted is task.mode and motion_suits(task, wanted):
         return
     if task.interp_state is not Interp.IDLE:

@@ -139,11 +139,12 @@ class WorldModel(MoveCanon):
         return self.io.status.tool.pocketPrepped
 
     def get_external_tool_table(self, index: int) -> Tool:
-        entry = self.io.table.tools[index]
+        table = self.io.table
+        entry = table.tools[index]
         pose = entry.offset
         offset = (pose.tran.x, pose.tran.y, pose.tran.z, pose.a, pose.b, pose.c, pose.u, pose.v, pose.w)
         return Tool(
-            entry.toolno,
+            entry.toolno if index or table.random else max(entry.toolno, 0),
             entry.pocketno,
             offset,
             entry.diameter,

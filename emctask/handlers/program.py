@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import AUTO, MDI, PROGRAMMED, Refused, command
+from emctask.commandtable import AUTO, MDI, Refused, command
 from nml.emc import (
     EMC_TASK_PLAN_CLOSE,
     EMC_TASK_PLAN_END,
@@ -34,9 +34,7 @@ if TYPE_CHECKING:
 
 def _must_be_homed(task: Task, what: str) -> None:
     if not task.config.no_force_homing and not task.motion.all_homed:
-        joints = task.motion.status.joint_status
-        missing = [str(n) for n in range(len(task.config.joints)) if not joints[n].homed]
-        raise Refused(f"{what} when not homed: home joint {', '.join(missing)} first")
+        raise Refused(f"Can't {what} when not homed")
 
 
 @command(EMC_TASK_PLAN_OPEN, idle=True)
@@ -45,7 +43,7 @@ def open_program(task: Task, message: EMC_TASK_PLAN_OPEN) -> None:
     try:
         task.plan.open(message.file)
     except (PyemcError, OSError) as error:
-        raise Refused(f"the program cannot be opened: {error}") from None
+        raise Refused(f"can't open {message.file}: {error}") from None
 
 
 @command(EMC_TASK_PLAN_CLOSE, idle=True)
@@ -59,26 +57,26 @@ def run(task: Task, message: EMC_TASK_PLAN_RUN) -> None:
     """Run the loaded program from a line; below 0: only check it."""
     if not task.plan.open_file:
         raise Refused("there is no program to run; open one first")
-    _must_be_homed(task, "a program cannot run")
+    _must_be_homed(task, "run a program")
     task.runner.run_program(message.line)
 
 
 @command(EMC_TASK_PLAN_EXECUTE, on=True, modes=MDI)
 def execute(task: Task, message: EMC_TASK_PLAN_EXECUTE) -> None:
     """Run an MDI line, after those before it."""
-    _must_be_homed(task, "an MDI line cannot run")
+    _must_be_homed(task, "issue MDI command")
     if len(task.mdi_queue) >= task.config.mdi_queue:
         raise Refused(f"{len(task.mdi_queue)} MDI lines wait already; [TASK]MDI_QUEUED_COMMANDS allows no more")
     task.runner.run_mdi(message.command)
 
 
-@command(EMC_TASK_PLAN_PAUSE, modes=PROGRAMMED)
+@command(EMC_TASK_PLAN_PAUSE)
 def pause(task: Task, message: EMC_TASK_PLAN_PAUSE) -> None:
     """Hold the program."""
     task.runner.pause()
 
 
-@command(EMC_TASK_PLAN_RESUME, modes=PROGRAMMED)
+@command(EMC_TASK_PLAN_RESUME)
 def resume(task: Task, message: EMC_TASK_PLAN_RESUME) -> None:
     """Go on after a pause."""
     if task.paused or task.motion.status.paused or task.runner.stepping:
@@ -91,7 +89,7 @@ def step(task: Task, message: EMC_TASK_PLAN_STEP) -> None:
     if task.interp_state is Interp.IDLE:
         if not task.plan.open_file:
             raise Refused("there is no program to step through; open one first")
-        _must_be_homed(task, "a program cannot run")
+        _must_be_homed(task, "run a program")
         task.runner.run_program(0)
         task.runner.stepping = True
     elif task.paused:

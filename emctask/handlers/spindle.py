@@ -37,7 +37,6 @@ def _spindles(task: Task, number: int) -> range:
 def on(task: Task, message: EMC_SPINDLE_ON) -> None:
     """Turn with this signed speed."""
     for spindle in _spindles(task, message.spindle):
-        task.canon.spindles[spindle].speed = abs(message.speed)
         task.canon.spindles[spindle].direction = -1 if message.speed < 0 else 1
         task.motion.send(
             MotCommand.SPINDLE_ON,
@@ -60,16 +59,16 @@ def off(task: Task, message: EMC_SPINDLE_OFF) -> None:
 
 @command(EMC_SPINDLE_INCREASE, on=True)
 def increase(task: Task, message: EMC_SPINDLE_INCREASE) -> None:
-    """Turn faster by one step."""
+    """Turn faster by one step, [SPINDLE_n]INCREMENT."""
     for spindle in _spindles(task, message.spindle):
-        task.motion.send(MotCommand.SPINDLE_INCREASE, spindle=spindle, vel=message.speed)
+        task.motion.send(MotCommand.SPINDLE_INCREASE, spindle=spindle, vel=task.config.spindles[spindle].increment)
 
 
 @command(EMC_SPINDLE_DECREASE, on=True)
 def decrease(task: Task, message: EMC_SPINDLE_DECREASE) -> None:
     """Turn slower by one step."""
     for spindle in _spindles(task, message.spindle):
-        task.motion.send(MotCommand.SPINDLE_DECREASE, spindle=spindle, vel=message.speed)
+        task.motion.send(MotCommand.SPINDLE_DECREASE, spindle=spindle, vel=task.config.spindles[spindle].increment)
 
 
 @command(EMC_SPINDLE_CONSTANT)

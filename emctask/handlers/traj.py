@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import MANUAL, Refused, always, command, refuse
+from emctask.commandtable import Refused, always, command, refuse
 from nml.emc import (
     EMC_MOTION_ABORT,
     EMC_MOTION_ADAPTIVE,
@@ -51,6 +51,7 @@ from nml.emc import (
     EMC_TRAJ_STEP,
 )
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
 from nml.emc.constants import EMC_TRAJ_MODE_ENUM as TrajMode
 from nml.emc.emcmot import MAX_AIO, MAX_DIO, MotCommand
@@ -134,9 +135,10 @@ def set_acceleration(task: Task, message: EMC_TRAJ_SET_ACCELERATION) -> None:
     task.motion.send(MotCommand.SET_ACC, acc=acceleration)
 
 
-@command(EMC_TRAJ_SET_TELEOP_ENABLE, on=True, modes=MANUAL)
+@command(EMC_TRAJ_SET_TELEOP_ENABLE, on=True, idle=True)
 def teleop(task: Task, message: EMC_TRAJ_SET_TELEOP_ENABLE) -> None:
-    """Jog axes, or single joints."""
+    """Jog axes, or single joints: manual mode."""
+    task.mode = Mode.MANUAL
     task.motion.send(MotCommand.TELEOP if message.enable else MotCommand.FREE)
 
 

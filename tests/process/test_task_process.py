@@ -36,12 +36,12 @@ def test_commands_are_refused_with_a_reason_while_they_cannot_be_done(desk):
     assert (status.task_state, status.task_mode, status.interp_state) == (1, linuxcnc.MODE_MANUAL, 1)
     assert (status.exec_state, status.inpos, status.state, status.rapidrate) == (2, True, DONE, 1.0)
     assert desk.mdi("G0 X1") == ERROR
-    assert "in E-stop" in desk.texts[-1]
+    assert desk.texts[-1].endswith("until the machine is out of E-stop and turned on")
     assert desk.do(desk.command.state, linuxcnc.STATE_ON) == ERROR
     assert "reset the E-stop first" in desk.texts[-1]
     desk.ready(linuxcnc.MODE_MANUAL)
     assert desk.mdi("G0 X1") == ERROR
-    assert "MDI mode" in desk.texts[-1]
+    assert desk.texts[-1] == "Must be in MDI mode to issue MDI command"
     assert desk.do(desk.command.jog, linuxcnc.JOG_CONTINUOUS, False, 8, 1.0) == ERROR
     assert "axis 8 cannot be jogged" in desk.texts[-1]
 
@@ -181,7 +181,7 @@ def test_an_estop_while_cutting_stops_everything_and_the_machine_starts_again(de
     assert desk.stat.flood == 1
     assert desk.do(desk.command.state, linuxcnc.STATE_ESTOP) == DONE
     status = desk.stat
-    assert (status.task_state, status.task_mode, status.interp_state) == (1, linuxcnc.MODE_MANUAL, 1)
+    assert (status.task_state, status.task_mode, status.interp_state) == (1, linuxcnc.MODE_AUTO, 1)
     desk.until(lambda s: s.flood == 0 and s.spindle[0]["direction"] == 0, "coolant and spindle off")
     assert desk.do(desk.command.state, linuxcnc.STATE_ESTOP_RESET) == DONE
     assert desk.do(desk.command.state, linuxcnc.STATE_ON) == DONE

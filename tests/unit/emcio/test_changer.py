@@ -64,6 +64,26 @@ def test_tool_zero_is_changed_for_an_empty_spindle(changer, pins):
     assert changer.spindle_events[-1] == ("u", 0, 0)
 
 
+def test_an_empty_spindle_came_from_no_pocket(changer, pins):
+    change(changer, pins, 5)
+    changer.set_number(0)
+    assert (pins["tool-from-pocket"], changer.from_pocket) == (0, 0)
+
+
+def test_the_empty_spindle_is_prepared_as_soon_as_it_is_asked_for(changer, pins):
+    change(changer, pins, 5)
+    changer.prepare(0)
+    assert (changer.prepared, changer.busy, pins["tool-prepare"]) == (0, True, True)
+
+
+def test_tool_zero_of_a_random_changer_came_from_no_pocket(pins):
+    store = ToolStore(random=True)
+    store.load([Tool(toolno=3, pocketno=0), Tool(toolno=0, pocketno=2)])
+    changer = Changer(store, pins)
+    change(changer, pins, 0)
+    assert (changer.in_spindle, pins["tool-from-pocket"], store.entries[2].toolno) == (0, 0, 3)
+
+
 def test_an_unknown_tool_and_a_change_without_preparation_are_refused(changer):
     with pytest.raises(ValueError, match="T9 is not in the tool table"):
         changer.prepare(9)

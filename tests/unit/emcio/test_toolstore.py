@@ -102,6 +102,17 @@ def test_a_random_changer_starts_with_the_tool_of_pocket_zero_in_its_spindle():
     assert (store.in_spindle, store.index_of(4)) == (4, 0)
 
 
+def test_a_random_spindle_is_what_the_table_says_also_after_reading_it_anew():
+    store = ToolStore(random=True)
+    store.load([Tool(toolno=4, pocketno=0), *TOOLS])
+    store.load(TOOLS)
+    assert (store.in_spindle, store.entries[0].toolno) == (0, -1)
+
+
+def test_nobody_knows_of_a_tool_in_a_nonrandom_spindle_at_start():
+    assert (make(random=False).entries[0].toolno, make(random=False).entries[0].pocketno) == (-1, -1)
+
+
 def test_the_published_message_tells_what_the_store_holds():
     store = make(random=True)
     message = EMC_TOOL_TABLE()

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from emctask import handlers
-from emctask.commandtable import REFUSALS, RULES, Refused, Rule, check, never
+from emctask.commandtable import MANUAL, MDI, REFUSALS, RULES, Refused, Rule, check, never
 from nml.emc import EMC_TASK_ABORT, EMC_TASK_PLAN_EXECUTE, EMC_TASK_SET_STATE
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
@@ -44,15 +44,17 @@ def test_no_command_is_both_handled_and_refused():
 @pytest.mark.parametrize(
     ("rule", "state", "mode", "interp", "reason"),
     [
-        (everywhere(on=True), State.ESTOP, Mode.MDI, Interp.IDLE, "it is in E-stop"),
-        (everywhere(on=True), State.ESTOP_RESET, Mode.MDI, Interp.IDLE, "it is off"),
-        (everywhere(modes=frozenset({Mode.MANUAL})), State.ON, Mode.AUTO, Interp.IDLE, "only be done in manual mode"),
-        (everywhere(idle=True), State.ON, Mode.AUTO, Interp.PAUSED, "the interpreter is paused"),
+        (everywhere(on=True), State.ESTOP, Mode.MDI, Interp.IDLE, r"\(EMC_TASK_PLAN_EXECUTE\) .* turned on$"),
+        (everywhere(on=True), State.ESTOP_RESET, Mode.MDI, Interp.IDLE, "until the machine is out of E-stop"),
+        (everywhere(modes=MANUAL), State.ON, Mode.MDI, Interp.IDLE, r"can't do that \(.*EXECUTE:509\) in MDI mode"),
+        (everywhere(modes=MANUAL), State.ON, Mode.AUTO, Interp.IDLE, "in auto mode with the interpreter idle"),
+        (everywhere(modes=MDI), State.ON, Mode.MANUAL, Interp.IDLE, "Must be in MDI mode to issue MDI command"),
+        (everywhere(idle=True), State.ON, Mode.AUTO, Interp.PAUSED, "in auto mode with the interpreter paused"),
     ],
 )
 def test_a_rule_that_is_not_met_says_why(rule, state, mode, interp, reason):
     with pytest.raises(Refused, match=reason):
-        check(rule, "EMC_SOMETHING", state, mode, interp)
+        check(rule, EMC_TASK_PLAN_EXECUTE(), state, mode, interp)
 
 
 def test_orders_to_stop_overtake_what_is_being_waited_for():
@@ -63,4 +65,4 @@ def test_orders_to_stop_overtake_what_is_being_waited_for():
 
 
 def test_a_rule_that_is_met_says_nothing():
-    check(everywhere(on=True, idle=True), "EMC_SOMETHING", State.ON, Mode.MDI, Interp.IDLE)
+    check(everywhere(on=True, idle=True), EMC_TASK_PLAN_EXECUTE(), State.ON, Mode.MDI, Interp.IDLE)

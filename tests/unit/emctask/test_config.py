@@ -47,6 +47,8 @@ def test_homing_switches_become_the_bits_that_motion_knows(tmp_path):
         ("[JOINT_1]\nMAX_VELOCITY = fast\n", ":7: [JOINT_1]MAX_VELOCITY: 'fast' is not a number"),
         ("[JOINT_1]\nMAX_VELOCITY = 0\n", ":7: [JOINT_1]MAX_VELOCITY: 0 would never move"),
         ("[AXIS_X]\nMIN_LIMIT = 5\nMAX_LIMIT = 1\n", ":7: [AXIS_X]MIN_LIMIT: 5 is not below MAX_LIMIT = 1"),
+        ("[EMCIO]\nTOOL_CHANGE_POSITION = 1 2\n", ":7: [EMCIO]TOOL_CHANGE_POSITION: 2 numbers; 0, 3, 6, 9 are allowed"),
+        ("[EMCIO]\nTOOL_CHANGE_POSITION = 1 2 z\n", "TOOL_CHANGE_POSITION: '1 2 z': up to nine numbers are needed"),
         ("[JOINT_1]\nTYPE = ROUND\n", ":7: [JOINT_1]TYPE: 'ROUND' is not one of LINEAR, ANGULAR"),
     ],
 )
