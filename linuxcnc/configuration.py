@@ -10,7 +10,7 @@ from pathlib import Path
 import nml
 from hal.session import find_hal_file
 from linuxcnc.options import Overrides
-from linuxcnc.programs import MODULES, Programs, python_module
+from linuxcnc.programs import MODULES, SERVICES, Programs, python_module
 from nml import clock, namespace
 from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
@@ -52,6 +52,13 @@ class Configuration:
         self.io = self.programs.command("EMCIO", "EMCIO", "io")
         self.server = self._server()
         self.halui = self.programs.command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
+
+    def services(self) -> dict[str, list[str]]:
+        """Command lines of the programs beside the machine, by name."""
+        wanted = {section: module for section, module in SERVICES.items() if section in self.ini.sections()}
+        return {
+            section.lower(): [*python_module(module), "-ini", str(self.path)] for section, module in wanted.items()
+        }
 
     def display(self) -> list[str]:
         """Command line of the display; only asked for when one is to be started."""

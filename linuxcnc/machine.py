@@ -72,6 +72,7 @@ class Machine:
         self.report = report
         self.talk = talk
         self.children: list[Child] = []
+        self._services: list[Child] = []
         self._nml_file = str(configuration.nml_file) if configuration.nml_file else None
         self._environment = configuration.environment()
         os.environ.update(self._environment)
@@ -109,6 +110,7 @@ class Machine:
         self._record_user_components()
         status = Channel(self._nml_file, "emcStatus", "xemc")
         self.wait_until(lambda: status.peek() is not None, "task")
+        self._services = [self._spawn(name, command) for name, command in configuration.services().items()]
 
     def start_display(self) -> Child:
         """Start the display that the INI names, in the foreground."""
@@ -178,6 +180,9 @@ class Machine:
         if self._host_record is not None and not self._host_record.alive:
             raise MachineError(f"the realtime host (process {self._host_record.pid}) died")
         ended = [child for child in self.children if child.process.poll() is not None]
+        for child in [child for child in ended if child in self._services]:
+            self._do_without(child)
+            ended.remove(child)
         if not ended:
             for child in self.children:
                 for line in child.new_output():
@@ -187,6 +192,13 @@ class Machine:
         for line in child.new_output():
             self.report(line)
         raise MachineError(child.farewell())
+
+    def _do_without(self, service: Child) -> None:
+        """A program beside the machine has ended; the machine goes on."""
+        for line in service.new_output():
+            self.report(line)
+        self.report(f"{service.farewell() or f'{service.name} ended'}; the machine goes on without it")
+        self.children.remove(service)
 
     # --- stopping --------------------------------------------------------------------------------------------------
 

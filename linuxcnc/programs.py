@@ -23,6 +23,8 @@ MODULES = {
     "linuxcncsvr": "nml.net.server",
     "web": "gui.web",
 }
+# Programs of ours that run beside the machine where the INI file has their section
+SERVICES = {"MQTT": "gui.shop.mqtt", "OPCUA": "gui.shop.opcua"}
 
 
 class Programs:
