@@ -52,6 +52,7 @@ from emcmot._messages cimport (
     MotCommand_SET_ACC,
     MotCommand_SET_AOUT,
     MotCommand_SET_AXIS_ACC_LIMIT,
+    MotCommand_SET_AXIS_JERK_LIMIT,
     MotCommand_SET_AXIS_LOCKING_JOINT,
     MotCommand_SET_AXIS_POSITION_LIMITS,
     MotCommand_SET_AXIS_VEL_LIMIT,
@@ -59,10 +60,12 @@ from emcmot._messages cimport (
     MotCommand_SET_DEBUG,
     MotCommand_SET_DOUT,
     MotCommand_SET_HEARTBEAT_TIMEOUT,
+    MotCommand_SET_JERK,
     MotCommand_SET_JOINT_ACC_LIMIT,
     MotCommand_SET_JOINT_BACKLASH,
     MotCommand_SET_JOINT_COMP,
     MotCommand_SET_JOINT_HOMING_PARAMS,
+    MotCommand_SET_JOINT_JERK_LIMIT,
     MotCommand_SET_JOINT_MAX_FERROR,
     MotCommand_SET_JOINT_MIN_FERROR,
     MotCommand_SET_JOINT_MOTOR_OFFSET,
@@ -73,6 +76,7 @@ from emcmot._messages cimport (
     MotCommand_SET_NUM_JOINTS,
     MotCommand_SET_NUM_SPINDLES,
     MotCommand_SET_OFFSET,
+    MotCommand_SET_PLANNER_TYPE,
     MotCommand_SET_PROBE_ERR_INHIBIT,
     MotCommand_SET_SPINDLESYNC,
     MotCommand_SET_SPINDLE_PARAMS,
@@ -416,3 +420,7 @@ command(
 )
 command(MotCommand_HEARTBEAT, 0, nothing, "Task is alive.")
 command(MotCommand_SET_UNITS, 0, set_parameters, "Millimetres per lu, for the feed pins.")
+command(MotCommand_SET_JERK, 0, set_parameters, "Cap on the jerk of the path, 0: none.")
+command(MotCommand_SET_PLANNER_TYPE, 0, set_parameters, "`mode` 0: speeds change at once to full acceleration; 1: under the jerk limits.")
+command(MotCommand_SET_JOINT_JERK_LIMIT, JOINT, set_parameters, "Largest jerk, 0: none.")
+command(MotCommand_SET_AXIS_JERK_LIMIT, AXIS, set_parameters, "Largest jerk, 0: none.")

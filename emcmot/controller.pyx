@@ -4,7 +4,7 @@ The command handler has run just before (``commands.run``). Pins are already cop
 out of it afterwards by motmod or by the stepped simulator.
 """
 
-from libc.math cimport sqrt
+from libc.math cimport fabs, isfinite, sqrt
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport (
@@ -23,7 +23,7 @@ from emcmot.free_planner cimport free_planner_step
 from emcmot.homing cimport homing_cycle
 from emcmot.jog cimport end_jogs, jog_cycle
 from emcmot.joint cimport command_joint, read_joints, write_joints
-from emcmot.modes cimport fall_to_free, resting, set_mode, stop_all
+from emcmot.modes cimport fall_to_free, resting, set_mode, stop_all, switch_kinematics
 from emcmot.probe cimport probe_cycle
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport spindle_cycle
@@ -31,6 +31,7 @@ from emcmot.state cimport LINES, Axis, Joint, Motion
 from emcmot.status cimport fill_status
 from emcmot.synchronised cimport synchronised_cycle
 from emcmot.tp.tp cimport (
+    TP_OK,
     TpIo,
     tp_get_status,
     tp_run_cycle,
@@ -38,6 +39,7 @@ from emcmot.tp.tp cimport (
     tp_set_feed_hold,
     tp_set_feed_scale,
     tp_set_rapid_scale,
+    tp_set_reverse,
     tp_take_io,
 )
 from emcmot.world cimport CHASE_LOST, command_world, update_world_feedback, world_from_joints
@@ -122,10 +124,27 @@ cdef void watch_soft_limits(Motion* m) noexcept nogil:
         joint.soft_limit_reported = 1
 
 
+cdef double adaptive_scale(Motion* m, int enables) noexcept nogil:
+    """motion.adaptive-feed without its sign, which is the direction on the path; 0 until the planner has turned."""
+    cdef int wanted
+    if not isfinite(m.adaptive_feed):
+        return 0.0
+    if m.tp_status.done or not enables & Enables_AF:
+        m.adaptive_reverse = 0
+    else:
+        m.adaptive_reverse = m.adaptive_feed < 0.0
+    wanted = m.command_reverse != m.adaptive_reverse
+    if wanted != m.tp_status.reversing and not m.tp_status.done:
+        if tp_set_reverse(m.tp, wanted) != TP_OK:
+            return 0.0
+        tp_get_status(m.tp, &m.tp_status)
+    return min(fabs(m.adaptive_feed), 1.0)
+
+
 cdef void set_overrides(Motion* m) noexcept nogil:
     """Hand the planner this period's overrides, and work out the product that acts on the running move."""
     cdef int enables = m.tp_status.enables if m.tp_status.motion_type else m.enables
-    m.adaptive_scale = min(max(m.adaptive_feed, 0.0), 1.0)
+    m.adaptive_scale = adaptive_scale(m, enables)
     tp_set_feed_scale(m.tp, m.feed_scale)
     tp_set_rapid_scale(m.tp, m.rapid_scale)
     tp_set_adaptive_scale(m.tp, m.adaptive_scale)
@@ -268,7 +287,10 @@ cdef void controller(Motion* m) noexcept nogil:
     spindle_cycle(m)
     move(m)
     write_queued_outputs(m)
-    m.at_rest = resting(m)
+    if m.kins.ways > 1:
+        switch_kinematics(m)
+    m.at_rest = resting(m) and m.settling == 0
+    m.settling -= m.settling > 0
     if m.at_rest:
         m.stopping = 0
     end_jogs(m)

@@ -139,12 +139,14 @@ cdef int reverse(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
         return refuse(m, b"can't run in reverse: pause the program first")
     if tp_set_reverse(m.tp, 1) != TP_OK:
         return refuse(m, b"can't run in reverse: the planner does not go back from here")
+    m.command_reverse = not m.adaptive_reverse
     return MotCommandStatus_OK
 
 
 cdef int forward(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.tp_status.reversing and tp_set_reverse(m.tp, 0) != TP_OK:
         return refuse(m, b"can't run forward: pause the program first")
+    m.command_reverse = m.adaptive_reverse
     return MotCommandStatus_OK
 
 

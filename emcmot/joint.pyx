@@ -46,7 +46,9 @@ cdef void read_joints(Motion* m) noexcept nogil:
 cdef void command_joint(Joint* joint, double pos, double dt) noexcept nogil:
     """Make ``pos`` the commanded position of this period."""
     cdef double vel = (pos - joint.pos_cmd) / dt
-    joint.acc_cmd = (vel - joint.vel_cmd) / dt
+    cdef double acc = (vel - joint.vel_cmd) / dt
+    joint.jerk_cmd = (acc - joint.acc_cmd) / dt
+    joint.acc_cmd = acc
     joint.vel_cmd = vel
     joint.pos_cmd = pos
 
@@ -57,6 +59,7 @@ cdef void set_joint_position(Joint* joint, double pos) noexcept nogil:
     joint.coarse_pos = pos
     joint.vel_cmd = 0.0
     joint.acc_cmd = 0.0
+    joint.jerk_cmd = 0.0
     free_planner_rest_at(&joint.free, pos)
 
 

@@ -6,3 +6,4 @@ cdef int resting(Motion* m) noexcept nogil
 cdef void stop_all(Motion* m) noexcept nogil
 cdef void set_mode(Motion* m) noexcept nogil
 cdef void fall_to_free(Motion* m) noexcept nogil
+cdef void switch_kinematics(Motion* m) noexcept nogil

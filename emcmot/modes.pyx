@@ -14,12 +14,13 @@ from emcmot.free_planner cimport free_planner_rest_at
 from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
 from emcmot.jog cimport stop_jogs
 from emcmot.joint cimport set_joint_position
+from emcmot.kins.kinematics cimport select_way
 from emcmot.probe cimport PROBE_OFF
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport stop_spindles
 from emcmot.state cimport Axis, Joint, Motion
 from emcmot.tp.tp cimport TP_OK, tp_abort, tp_set_pos
-from emcmot.world cimport align_joints, world_from_joints
+from emcmot.world cimport align_joints, refresh_planner_limits, update_world_feedback, world_from_joints
 
 
 cdef int joints_have_followed(Motion* m) noexcept nogil:
@@ -63,6 +64,7 @@ cdef void stop_all(Motion* m) noexcept nogil:
     m.pending_io.dout_mask = 0
     m.pending_io.aout_mask = 0
     m.paused = 0
+    m.command_reverse = 0
     m.stepping = 0
     m.wait_spindles = 0
     m.stopping = 1
@@ -192,3 +194,27 @@ cdef void fall_to_free(Motion* m) noexcept nogil:
     stop_all(m)
     m.coord_error = 1
     snprintf(report(m), TEXT_SIZE, b"The commanded position can't be reached by the joints: motion stopped")
+
+
+cdef void switch_kinematics(Motion* m) noexcept nogil:
+    """At the end of a period at rest: compute with the kinematics that motion.switchkins-type asks for.
+
+    The joints stand where they are; the pose is another one from now on.
+    """
+    cdef int way = <int>m.switchkins_type if fabs(m.switchkins_type) < 100.0 else -1
+    if way == m.kins.way or not resting(m):
+        return
+    if select_way(m.kins, way) != 0:
+        if m.refused_way != way:
+            snprintf(report(m), TEXT_SIZE, b"motion.switchkins-type: this kinematics has no type %d", way)
+        m.refused_way = way
+        return
+    m.refused_way = 0
+    refresh_planner_limits(m)
+    update_world_feedback(m)
+    if world_from_joints(m) != 0:
+        m.mode_wanted = MotionState_FREE
+    elif m.mode == MotionState_TELEOP:
+        enter_teleop(m)
+    elif m.mode == MotionState_COORD:
+        enter_coord(m)

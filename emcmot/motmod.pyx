@@ -42,6 +42,9 @@ cdef enum Width:
     WIDTH_FLOAT
     WIDTH_INT
     WIDTH_BIT
+    WIDTH_NUMBER         # a double, of a pin that is a whole number or a bit
+
+WIDTHS = {"float": WIDTH_FLOAT, "bit": WIDTH_BIT, "s32": WIDTH_INT, "u32": WIDTH_INT}
 
 ctypedef struct Binding:
     hal_pin pin
@@ -76,6 +79,8 @@ cdef inline void take(Binding* b) noexcept nogil:
         (<double*>b.at)[0] = cell.f
     elif b.width == WIDTH_BIT:
         (<int32_t*>b.at)[0] = cell.b != 0
+    elif b.width == WIDTH_NUMBER:
+        (<double*>b.at)[0] = cell.s
     else:
         (<int32_t*>b.at)[0] = cell.s
 
@@ -86,6 +91,8 @@ cdef inline void give(const Binding* b) noexcept nogil:
         cell.f = (<double*>b.at)[0]
     elif b.width == WIDTH_BIT:
         cell.b = (<int32_t*>b.at)[0] != 0
+    elif b.width == WIDTH_NUMBER:
+        cell.s = <int32_t>(<double*>b.at)[0]
     else:
         cell.s = (<int32_t*>b.at)[0]
 
@@ -184,15 +191,14 @@ cdef class Motmod(Core):
         self.channels.clear()
 
     def bind(self, comp, dict renamed):
-        """Make the HAL pins, and bind those of the kinematics' geometry as inputs."""
+        """Make the HAL pins, and bind them and those of the kinematics."""
         groups = {"IN": [], "OUT": [], "IO": []}
         for pin in self.pins:
             value = self._value(pin)
             made = comp.pin(renamed.get(pin.name, pin.name), TYPES[pin.type], DIRECTIONS[pin.direction], value=value)
-            groups[pin.direction].append((made.address, pin.address, pin.type))
-        first = self.kinematics.parameter_address
-        for n, address in enumerate(self.kinematics.pin_addresses):
-            groups["IN"].append((address, first + 8 * n, "float"))
+            groups[pin.direction].append((made.address, pin.address, WIDTHS[pin.type]))
+        for cell, at, kind, direction in self.kinematics.bindings:
+            groups[direction].append((cell, at, WIDTH_FLOAT if kind == "float" else WIDTH_NUMBER))
         self.servo.inputs, self.servo.input_count = bindings(groups["IN"]), len(groups["IN"])
         self.servo.outputs, self.servo.output_count = bindings(groups["OUT"]), len(groups["OUT"])
         self.servo.both, self.servo.both_count = bindings(groups["IO"]), len(groups["IO"])
@@ -213,14 +219,14 @@ cdef class Motmod(Core):
 
 
 cdef Binding* bindings(list rows) except? NULL:
-    """A C array of (address of the HAL pin, address of the member, type)."""
+    """A C array of (address of the HAL pin, address of the member, Width)."""
     cdef Binding* made = <Binding*>calloc(len(rows) + 1, sizeof(Binding))
     if made == NULL:
         raise MemoryError
-    for n, (pin, at, kind) in enumerate(rows):
+    for n, (pin, at, width) in enumerate(rows):
         made[n].pin = <hal_pin><uintptr_t>pin
         made[n].at = <void*><uintptr_t>at
-        made[n].width = WIDTH_FLOAT if kind == "float" else WIDTH_BIT if kind == "bit" else WIDTH_INT
+        made[n].width = width
     return made
 
 

@@ -23,6 +23,8 @@ from emcmot.state cimport LINES, Motion
 from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TP_TAP, TpSegment, tp_add
 from emcmot.world cimport check_box, check_end_point
 
+cdef int SETTLING = 3  # periods in which an analog output, and a HAL file behind it, may switch the kinematics
+
 cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
 cdef int TYPE_ARC = 3
@@ -178,6 +180,7 @@ cdef int set_aout(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     """M68 at once; M67 with the next move."""
     if c.now:
         m.analog_out[c.out] = c.minLimit
+        m.settling = SETTLING if m.kins.ways > 1 else 0
     else:
         m.pending_io_set = 1
         m.pending_io.aout_mask |= 1LL << c.out

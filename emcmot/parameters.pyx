@@ -13,19 +13,23 @@ from emcmot._messages cimport (
     MAX_AXES,
     MotCommand_SET_ACC,
     MotCommand_SET_AXIS_ACC_LIMIT,
+    MotCommand_SET_AXIS_JERK_LIMIT,
     MotCommand_SET_AXIS_LOCKING_JOINT,
     MotCommand_SET_AXIS_POSITION_LIMITS,
     MotCommand_SET_AXIS_VEL_LIMIT,
     MotCommand_SET_HEARTBEAT_TIMEOUT,
+    MotCommand_SET_JERK,
     MotCommand_SET_JOINT_ACC_LIMIT,
     MotCommand_SET_JOINT_BACKLASH,
     MotCommand_SET_JOINT_HOMING_PARAMS,
+    MotCommand_SET_JOINT_JERK_LIMIT,
     MotCommand_SET_JOINT_MAX_FERROR,
     MotCommand_SET_JOINT_MIN_FERROR,
     MotCommand_SET_JOINT_POSITION_LIMITS,
     MotCommand_SET_JOINT_VEL_LIMIT,
     MotCommand_SET_MAX_FEED_OVERRIDE,
     MotCommand_SET_OFFSET,
+    MotCommand_SET_PLANNER_TYPE,
     MotCommand_SET_SPINDLE_PARAMS,
     MotCommand_SET_TERM_COND,
     MotCommand_SET_UNITS,
@@ -56,6 +60,7 @@ cdef enum Rule:
     POSITIVE
     NOT_BELOW_PREVIOUS   # an upper limit after its lower one
     INTEGER
+    ZERO_OR_ONE
 
 ctypedef struct Row:
     int code
@@ -81,6 +86,7 @@ cdef const char** RULE_TEXTS = [
     "a number above 0",
     "not below the lower limit",
     "an integer",
+    "0 or 1",
 ]
 OWNERS = ("joint", "axis", "spindle", "machine")
 PARAMETERS: list[tuple[str, str, str, str]] = []   # command, of what, field of the command, what it takes
@@ -93,9 +99,19 @@ cdef int acceptable(int rule, double value, double previous) noexcept nogil:
         return value >= 0.0
     if rule == POSITIVE:
         return value > 0.0
+    if rule == ZERO_OR_ONE:
+        return value == 0.0 or value == 1.0
     if rule == NOT_BELOW_PREVIOUS:
         return value >= previous
     return 1
+
+
+cdef int is_integer(int rule) noexcept nogil:
+    return rule == INTEGER or rule == ZERO_OR_ONE
+
+
+cdef double value_of(const char* source, int rule) noexcept nogil:
+    return (<int*>source)[0] if is_integer(rule) else (<double*>source)[0]
 
 
 cdef char* owner_of(Motion* m, int owner, const EMCMOT_COMMAND* c) noexcept nogil:
@@ -116,8 +132,8 @@ cdef int set_parameters(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     cdef const char* source = <const char*>c
     cdef char* target
     for i in range(row_count):
-        if ROWS[i].code == c.command and ROWS[i].rule != INTEGER:
-            value = (<double*>(source + ROWS[i].source))[0]
+        if ROWS[i].code == c.command:
+            value = value_of(source + ROWS[i].source, ROWS[i].rule)
             if not acceptable(ROWS[i].rule, value, previous):
                 snprintf(
                     report(m), TEXT_SIZE, b"Motion command %d refused: %g is not %s",
@@ -128,7 +144,7 @@ cdef int set_parameters(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     for i in range(row_count):
         if ROWS[i].code == c.command:
             target = owner_of(m, ROWS[i].owner, c) + ROWS[i].target
-            if ROWS[i].rule == INTEGER:
+            if is_integer(ROWS[i].rule):
                 (<int*>target)[0] = (<int*>(source + ROWS[i].source))[0]
             else:
                 (<double*>target)[0] = (<double*>(source + ROWS[i].source))[0]
@@ -176,6 +192,7 @@ of_joint(MotCommand_SET_JOINT_MIN_FERROR, NOT_NEGATIVE, &C.minFerror, &J.min_fer
 of_joint(MotCommand_SET_JOINT_MAX_FERROR, NOT_NEGATIVE, &C.maxFerror, &J.max_ferror)
 of_joint(MotCommand_SET_JOINT_VEL_LIMIT, POSITIVE, &C.vel, &J.vel_limit)
 of_joint(MotCommand_SET_JOINT_ACC_LIMIT, POSITIVE, &C.acc, &J.acc_limit)
+of_joint(MotCommand_SET_JOINT_JERK_LIMIT, NOT_NEGATIVE, &C.jerk, &J.jerk_limit)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.offset, &J.home.offset)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.home, &J.home.home)
 of_joint(MotCommand_SET_JOINT_HOMING_PARAMS, ANY, &C.home_final_vel, &J.home.final_vel)
@@ -193,6 +210,7 @@ of_axis(MotCommand_SET_AXIS_VEL_LIMIT, NOT_NEGATIVE, &C.vel, &A.vel_limit)
 of_axis(MotCommand_SET_AXIS_VEL_LIMIT, NOT_NEGATIVE, &C.ext_offset_vel, &A.eoffset_vel_limit)
 of_axis(MotCommand_SET_AXIS_ACC_LIMIT, NOT_NEGATIVE, &C.acc, &A.acc_limit)
 of_axis(MotCommand_SET_AXIS_ACC_LIMIT, NOT_NEGATIVE, &C.ext_offset_acc, &A.eoffset_acc_limit)
+of_axis(MotCommand_SET_AXIS_JERK_LIMIT, NOT_NEGATIVE, &C.jerk, &A.jerk_limit)
 of_axis(MotCommand_SET_AXIS_LOCKING_JOINT, INTEGER, &C.joint, &A.locking_joint)
 of_spindle(MotCommand_SET_SPINDLE_PARAMS, NOT_NEGATIVE, &C.minSpeed, &S.min_speed)
 of_spindle(MotCommand_SET_SPINDLE_PARAMS, NOT_NEGATIVE, &C.maxSpeed, &S.max_speed)
@@ -202,6 +220,8 @@ of_machine(MotCommand_SET_VEL, NOT_NEGATIVE, &C.vel, &M.next_vel)
 of_machine(MotCommand_SET_VEL, NOT_NEGATIVE, &C.ini_maxvel, &M.next_vel_max)
 of_machine(MotCommand_SET_VEL_LIMIT, NOT_NEGATIVE, &C.vel, &M.vel_limit)
 of_machine(MotCommand_SET_ACC, NOT_NEGATIVE, &C.acc, &M.acc_limit)
+of_machine(MotCommand_SET_JERK, NOT_NEGATIVE, &C.jerk, &M.jerk_limit)
+of_machine(MotCommand_SET_PLANNER_TYPE, ZERO_OR_ONE, &C.mode, &M.planner_type)
 of_machine(MotCommand_SET_TERM_COND, INTEGER, &C.termCond, &M.term_cond)
 of_machine(MotCommand_SET_TERM_COND, NOT_NEGATIVE, &C.tolerance, &M.term_tolerance)
 of_machine(MotCommand_SET_MAX_FEED_OVERRIDE, NOT_NEGATIVE, &C.scale, &M.max_feed_scale)

@@ -74,6 +74,7 @@ cdef void joint_pins(Collector c, Joint* j, bint lockable, bint extra) except *:
     c.float_out("pos-cmd", &j.pos_cmd)
     c.float_out("vel-cmd", &j.vel_cmd)
     c.float_out("acc-cmd", &j.acc_cmd)
+    c.float_out("jerk-cmd", &j.jerk_cmd)
     c.float_out("pos-fb", &j.pos_fb)
     c.float_out("coarse-pos-cmd", &j.coarse_pos)
     c.float_out("backlash-corr", &j.backlash_corr)
@@ -155,6 +156,8 @@ cdef void machine_pins(Collector c, Motion* m) except *:
     c.bit_in("jog-stop-immediate", &m.jog_stop_immediate)
     c.bit_in("probe-input", &m.probe_input)
     c.float_in("adaptive-feed", &m.adaptive_feed)
+    if m.kins.ways > 1:
+        c.float_in("switchkins-type", &m.switchkins_type)
     c.bit_out("motion-enabled", &m.motion_enabled_out)
     c.bit_out("coord-mode", &m.coord_mode_out)
     c.bit_out("teleop-mode", &m.teleop_mode_out)

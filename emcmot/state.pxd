@@ -52,6 +52,7 @@ ctypedef struct Joint:
     double min_limit
     double vel_limit
     double acc_limit
+    double jerk_limit        # 0: none
     double min_ferror
     double max_ferror
     double backlash
@@ -76,6 +77,7 @@ ctypedef struct Joint:
     double pos_cmd
     double vel_cmd
     double acc_cmd
+    double jerk_cmd
     double backlash_corr     # correction wanted
     FreePlanner correction   # the correction applied, which follows it under limits
     double motor_offset
@@ -107,6 +109,7 @@ ctypedef struct Axis:
     double min_limit
     double vel_limit
     double acc_limit
+    double jerk_limit        # 0: none
     int locking_joint
     # inputs
     int32_t jog_counts
@@ -202,6 +205,7 @@ ctypedef struct Motion:
     int32_t jog_stop_immediate
     int32_t probe_input
     double adaptive_feed
+    double switchkins_type
     int32_t misc_error[MISC_ERRORS]
     int32_t digital_in[MAX_DIO]
     int32_t digital_out[MAX_DIO]
@@ -217,6 +221,8 @@ ctypedef struct Motion:
     int tracking             # disabled and at rest: the joint commands follow the feedback
     int chasing              # a joint of other than linear kinematics is behind its Cartesian command
     int coord_error
+    int refused_way          # the kinematics type asked for last that there is none of
+    int settling             # periods that a switch of the kinematics may still need to come in
     # pins that tell of it
     int32_t motion_enabled_out
     int32_t coord_mode_out
@@ -251,10 +257,14 @@ ctypedef struct Motion:
     double world_home[MAX_AXES]
     double vel_limit
     double acc_limit
+    double jerk_limit        # of the path; 0: none
+    int planner_type         # 0 trapezoidal, 1 with limited jerk
     double feed_scale
     double rapid_scale
     double max_feed_scale
     double adaptive_scale
+    int adaptive_reverse     # motion.adaptive-feed is negative: the path is to be run backwards
+    int command_reverse      # REVERSE is in force
     double net_feed_scale
     int enables
     int term_cond

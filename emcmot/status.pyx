@@ -59,6 +59,7 @@ cdef void fill_joint(EMCMOT_JOINT_STATUS* s, const Joint* joint) noexcept nogil:
     s.max_ferror = joint.max_ferror
     s.vel_limit = joint.vel_limit
     s.acc_limit = joint.acc_limit
+    s.jerk_limit = joint.jerk_limit
 
 
 cdef void fill_axis(EMCMOT_AXIS_STATUS* s, const Axis* axis, int teleop) noexcept nogil:
@@ -67,6 +68,7 @@ cdef void fill_axis(EMCMOT_AXIS_STATUS* s, const Axis* axis, int teleop) noexcep
     s.min_pos_limit = axis.min_limit
     s.vel_limit = axis.vel_limit
     s.acc_limit = axis.acc_limit
+    s.jerk_limit = axis.jerk_limit
 
 
 cdef void fill_spindle(EMCMOT_SPINDLE_STATUS* s, const Spindle* spindle) noexcept nogil:
@@ -138,6 +140,8 @@ cdef void fill_trajectory(EMCMOT_STATUS* s, const Motion* m) noexcept nogil:
     s.spindleSync = m.sync_spindle
     s.vel = m.vel_limit
     s.acc = m.acc_limit
+    s.jerk = m.jerk_limit
+    s.planner_type = m.planner_type
     s.current_vel = m.current_vel
     s.requested_vel = m.requested_vel
     s.distance_to_go = m.distance_to_go
@@ -166,6 +170,7 @@ cdef void fill_machine(EMCMOT_STATUS* s, const Motion* m) noexcept nogil:
     s.num_dio = m.num_dio
     s.num_aio = m.num_aio
     s.kinematics_type = m.kins.type
+    s.kinematics_way = m.kins.way
     s.heartbeat = m.heartbeat
     s.config_num = m.config_num
     s.servo_period = m.dt

@@ -284,6 +284,13 @@ cdef void lower(double* axis_limits, const double* row, double joint_limit) noex
             axis_limits[i] *= joint_limit / total
 
 
+cdef double tighter(double one, double other) noexcept nogil:
+    """The smaller of two limits, of which 0 is none."""
+    if one <= 0.0 or 0.0 < other < one:
+        return other
+    return one
+
+
 cdef void refresh_planner_limits(Motion* m) noexcept nogil:
     """Tell the planner what each axis may do: what its INI section says, and no more than its joints can follow.
 
@@ -292,17 +299,21 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
     """
     cdef double vel[MAX_AXES]
     cdef double acc[MAX_AXES]
+    cdef double jerk[MAX_AXES]
     cdef double row[MAX_AXES]
     cdef int n, i
     for i in range(MAX_AXES):
         vel[i] = m.axis[i].vel_limit
         acc[i] = m.axis[i].acc_limit
+        jerk[i] = tighter(m.axis[i].jerk_limit, m.jerk_limit)
     for n in range(m.kins.joints):
         i = m.kins.axis_of_joint[n]
         if i >= 0 and vel[i] <= 0.0:
             vel[i] = m.joint[n].vel_limit
         if i >= 0 and acc[i] <= 0.0:
             acc[i] = m.joint[n].acc_limit
+        if i >= 0:
+            jerk[i] = tighter(jerk[i], m.joint[n].jerk_limit)
     for n in range(m.kins.joints):
         joint_of_axes(m, n, row)
         lower(vel, row, m.joint[n].vel_limit)
@@ -311,4 +322,4 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
         m.axis[i].vel_net = vel[i]
         m.axis[i].acc_net = acc[i]
         if vel[i] > 0.0 and acc[i] > 0.0:
-            tp_set_axis_limits(m.tp, i, vel[i], acc[i], 0.0)
+            tp_set_axis_limits(m.tp, i, vel[i], acc[i], jerk[i])

@@ -2,9 +2,9 @@
 follow.
 """
 
-from emcmot.kins.kinematics cimport KINEMATICS_BOTH, Kinematics, KinematicsModule
+from emcmot.kins.kinematics cimport Kinematics, KinematicsModule
 
-from emcmot.kins.kinematics import provide, refuse_arguments
+from emcmot.kins.kinematics import check_arguments, provide
 
 JOINTS = 9
 
@@ -28,18 +28,12 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
 
 
 def create() -> KinematicsModule:
-    cdef KinematicsModule module = KinematicsModule("corexykins")
-    module.flexible = True
-    module.kins.linear = 1
-    module.kins.type = KINEMATICS_BOTH
-    module.kins.joints = JOINTS
-    for joint in range(2, JOINTS):
-        module.kins.axis_of_joint[joint] = joint
-    module.kins.forward = forward
-    module.kins.inverse = inverse
+    cdef KinematicsModule module = KinematicsModule("corexykins", JOINTS)
+    module.fewest_joints = 3
+    module.offer(forward, inverse, {joint: joint for joint in range(2, JOINTS)}, linear=True)
     return module
 
 
 def load(host, args: dict) -> None:
-    refuse_arguments("corexykins", args)
+    check_arguments("corexykins", args)
     provide(host, create())

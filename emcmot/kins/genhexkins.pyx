@@ -3,57 +3,73 @@
 The platform turns about x by a, then about y by b, then about z by c (degrees). The struts of a pose are distances;
 the pose of given struts is found by Newton's method from the last known pose, which takes two or three steps from a
 period before. Geometry, as pins: base.N.x .. and platform.N.x .. (ends of strut N), spindle-offset, tool-offset,
-convergence-criterion, limit-iterations, max-error.
+convergence-criterion, limit-iterations, max-error. A strut whose screw may turn in its nut as its cardanic joints lean
+(axes base-n.N.x .., platform-n.N.x ..) is lengthened by its twist times ``screw-lead``; correction.N shows it. The pins
+skgui.x .. show the last pose for a screen. Switchable to the identity.
 """
 
-from libc.math cimport M_PI, cos, fabs, sin, sqrt
+from libc.math cimport M_PI, asin, cos, fabs, sin, sqrt
 
-from emcmot.kins.kinematics cimport KINEMATICS_BOTH, Kinematics, KinematicsModule
+from emcmot.kins.frames cimport DEGREE, attitude_matrix
+from emcmot.kins.kinematics cimport Kinematics, KinematicsModule
+from emcmot.kins.serial cimport solve6
 
-from emcmot.kins.kinematics import provide, refuse_arguments
+from emcmot.kins.kinematics import check_arguments, joint_letters, provide
 
-cdef enum:
+cdef enum:                  # parameters
     STRUTS = 6
-    PLATFORM = 18           # first parameter of the platform's points, after those of the base
-    SPINDLE_OFFSET = 36
-    TOOL_OFFSET = 37
-    CRITERION = 38
-    LIMIT_ITERATIONS = 39
-    MAX_ERROR = 40
+    PLATFORM = 18           # the platform's points, after those of the base
+    BASE_AXES = 36
+    PLATFORM_AXES = 54
+    SPINDLE_OFFSET = 72
+    TOOL_OFFSET = 73
+    CRITERION = 74
+    LIMIT_ITERATIONS = 75
+    MAX_ERROR = 76
+    SCREW_LEAD = 77
 
-NAMES = (
-    *(f"base.{n}.{c}" for n in range(6) for c in "xyz"),
-    *(f"platform.{n}.{c}" for n in range(6) for c in "xyz"),
-    "spindle-offset",
-    "tool-offset",
-    "convergence-criterion",
-    "limit-iterations",
-    "max-error",
-)
+cdef enum:                  # outputs
+    CORRECTION = 0
+    LAST_ITERATIONS = 6
+    MAX_ITERATIONS = 7
+    FORWARD_FAILED = 8
+    SHOWN_POSE = 9
+
 BASE = ((-22.95, 13.25), (22.95, 13.25), (22.95, 13.25), (0.0, -26.5), (0.0, -26.5), (-22.95, 13.25))
 TOP = ((-1.0, 11.5), (1.0, 11.5), (10.459, -4.884), (9.459, -6.616), (-9.459, -6.616), (-10.459, -4.884))
-DEFAULTS = (
-    *(v for x, y in BASE for v in (x, y, 0.0)),
-    *(v for x, y in TOP for v in (x, y, 0.0)),
-    0.0,
-    0.0,
-    1e-9,
-    120.0,
-    500.0,
+S45, S60 = 0.707107, 0.866025
+BASE_N = ((S45, 0.0), (0.0, -S45), (-S45, 0.0), (-S45, 0.0), (0.0, S45), (S45, 0.0))
+TOP_N = ((-1.0, 0.0), (S60, 0.5), (S60, 0.5), (S60, -0.5), (S60, -0.5), (-1.0, 0.0))
+
+
+def points(stem: str, places, z: float) -> list:
+    return [
+        (f"{stem}.{n}.{letter}", value)
+        for n, (x, y) in enumerate(places)
+        for letter, value in (("x", x), ("y", y), ("z", z))
+    ]
+
+
+PARAMETERS = (
+    *points("base", BASE, 0.0),
+    *points("platform", TOP, 0.0),
+    *points("base-n", BASE_N, S45),
+    *points("platform-n", TOP_N, 0.0),
+    ("spindle-offset", 0.0),
+    ("tool-offset", 0.0),
+    ("convergence-criterion", 1e-9),
+    ("limit-iterations", 120.0, "u32"),
+    ("max-error", 500.0),
+    ("screw-lead", 0.0),
 )
-cdef double DEGREE = M_PI / 180.0
-cdef double SMALL_PIVOT = 1e-12
+OUTPUTS = (
+    *((f"correction.{n}", 0.0, "float", "OUT") for n in range(6)),
+    ("last-iterations", 0.0, "u32", "OUT"),
+    ("max-iterations", 0.0, "u32", "OUT"),
+    ("fwd-kins-fail", 0.0, "bit", "OUT"),
+    *((f"skgui.{letter}", 0.0, "float", "OUT") for letter in "xyzabc"),
+)
 cdef double UPRIGHT_SHARE = 0.8   # height of the upright pose over the mean length of the struts
-
-
-cdef void rotation(const double* pose, double* r) noexcept nogil:
-    """The matrix of the platform's attitude, row by row."""
-    cdef double sa = sin(pose[3] * DEGREE), ca = cos(pose[3] * DEGREE)
-    cdef double sb = sin(pose[4] * DEGREE), cb = cos(pose[4] * DEGREE)
-    cdef double sc = sin(pose[5] * DEGREE), cc = cos(pose[5] * DEGREE)
-    r[0], r[1], r[2] = cc * cb, cc * sb * sa - sc * ca, cc * sb * ca + sc * sa
-    r[3], r[4], r[5] = sc * cb, sc * sb * sa + cc * ca, sc * sb * ca - cc * sa
-    r[6], r[7], r[8] = -sb, cb * sa, cb * ca
 
 
 cdef void strut(
@@ -62,16 +78,48 @@ cdef void strut(
     """``arm``: from the tool's tip to the strut's end on the platform; ``vector``: from the base to there."""
     cdef const double* base = &kins.parameter[3 * n]
     cdef const double* top = &kins.parameter[PLATFORM + 3 * n]
-    cdef double z = top[2] + kins.parameter[SPINDLE_OFFSET] + kins.parameter[TOOL_OFFSET]
+    cdef double offset = kins.parameter[SPINDLE_OFFSET] + kins.parameter[TOOL_OFFSET]
     cdef int i
     for i in range(3):
-        arm[i] = r[3 * i] * top[0] + r[3 * i + 1] * top[1] + r[3 * i + 2] * z
+        arm[i] = r[3 * i] * top[0] + r[3 * i + 1] * top[1] + r[3 * i + 2] * (top[2] + offset)
         vector[i] = pose[i] + arm[i] - base[i]
-    vector[2] -= kins.parameter[SPINDLE_OFFSET]
+    vector[2] -= offset
 
 
 cdef double length(const double* v) noexcept nogil:
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+
+
+cdef void cross(const double* u, const double* v, double* w) noexcept nogil:
+    w[0] = u[1] * v[2] - u[2] * v[1]
+    w[1] = u[2] * v[0] - u[0] * v[2]
+    w[2] = u[0] * v[1] - u[1] * v[0]
+
+
+cdef double screw_correction(const Kinematics* kins, const double* r, int n, const double* vector) noexcept nogil:
+    """What the twist between the two joints of strut n screws it out; ``vector``: the strut."""
+    cdef double lead = kins.parameter[SCREW_LEAD]
+    cdef const double* below = &kins.parameter[BASE_AXES + 3 * n]
+    cdef const double* fixed = &kins.parameter[PLATFORM_AXES + 3 * n]
+    cdef double above[3]
+    cdef double at_base[3]
+    cdef double at_top[3]
+    cdef double between[3]
+    cdef double sine = 0.0, scale
+    cdef int i
+    if lead == 0.0:
+        kins.output[CORRECTION + n] = 0.0
+        return 0.0
+    for i in range(3):
+        above[i] = r[3 * i] * fixed[0] + r[3 * i + 1] * fixed[1] + r[3 * i + 2] * fixed[2]
+    cross(below, vector, at_base)
+    cross(vector, above, at_top)
+    cross(at_top, at_base, between)
+    scale = length(at_base) * length(at_top) * length(vector)
+    for i in range(3):
+        sine += between[i] * vector[i]
+    kins.output[CORRECTION + n] = lead * asin(min(max(sine / scale, -1.0), 1.0)) / (2.0 * M_PI) if scale > 0.0 else 0.0
+    return kins.output[CORRECTION + n]
 
 
 cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
@@ -79,40 +127,10 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
     cdef double arm[3]
     cdef double vector[3]
     cdef int n
-    rotation(pose, r)
+    attitude_matrix(pose, r)
     for n in range(STRUTS):
         strut(kins, pose, r, n, arm, vector)
-        joints[n] = length(vector)
-    return 0
-
-
-cdef int solve(double* a, double* b) noexcept nogil:
-    """Gauss with column pivots: a (6 x 6) x = b, the solution in b; -1 where a is singular."""
-    cdef int col, row, k, best
-    cdef double swap, factor
-    for col in range(STRUTS):
-        best = col
-        for row in range(col + 1, STRUTS):
-            if fabs(a[6 * row + col]) > fabs(a[6 * best + col]):
-                best = row
-        if not fabs(a[6 * best + col]) > SMALL_PIVOT:
-            return -1
-        for k in range(STRUTS):
-            swap = a[6 * col + k]
-            a[6 * col + k] = a[6 * best + k]
-            a[6 * best + k] = swap
-        swap = b[col]
-        b[col] = b[best]
-        b[best] = swap
-        for row in range(col + 1, STRUTS):
-            factor = a[6 * row + col] / a[6 * col + col]
-            for k in range(col, STRUTS):
-                a[6 * row + k] -= factor * a[6 * col + k]
-            b[row] -= factor * b[col]
-    for row in range(STRUTS - 1, -1, -1):
-        for k in range(row + 1, STRUTS):
-            b[row] -= a[6 * row + k] * b[k]
-        b[row] /= a[6 * row + row]
+        joints[n] = length(vector) + screw_correction(kins, r, n, vector)
     return 0
 
 
@@ -143,7 +161,7 @@ cdef double row_of(
         row[i] = vector[i] / size
         turned = axes[3 * i] * moment[0] + axes[3 * i + 1] * moment[1] + axes[3 * i + 2] * moment[2]
         row[3 + i] = turned / size * DEGREE
-    return size
+    return size + screw_correction(kins, r, n, vector)
 
 
 cdef int newton(const Kinematics* kins, const double* joints, double* pose) noexcept nogil:
@@ -155,22 +173,24 @@ cdef int newton(const Kinematics* kins, const double* joints, double* pose) noex
     cdef double worst
     cdef int iteration, n
     for iteration in range(<int>kins.parameter[LIMIT_ITERATIONS]):
-        rotation(pose, r)
+        attitude_matrix(pose, r)
         axes_of_attitude(pose, axes)
         worst = 0.0
         for n in range(STRUTS):
             step[n] = joints[n] - row_of(kins, pose, r, axes, n, &jacobian[6 * n])
             worst = max(worst, fabs(step[n]))
+        kins.output[LAST_ITERATIONS] = iteration
         if worst <= kins.parameter[CRITERION]:
+            kins.output[MAX_ITERATIONS] = max(kins.output[MAX_ITERATIONS], kins.output[LAST_ITERATIONS])
             return 0
-        if not worst <= kins.parameter[MAX_ERROR] or solve(jacobian, step) != 0:
+        if not worst <= kins.parameter[MAX_ERROR] or solve6(jacobian, step) != 0:
             return -1
         for n in range(STRUTS):
             pose[n] += step[n]
     return -1
 
 
-cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
+cdef int pose_of_struts(const Kinematics* kins, const double* joints, double* pose) noexcept nogil:
     """From the last known pose; where none is near (at the first homing), from an upright one above the base."""
     cdef double mean = 0.0
     cdef int n
@@ -183,15 +203,21 @@ cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept 
     return newton(kins, joints, pose)
 
 
-def create() -> KinematicsModule:
-    cdef KinematicsModule module = KinematicsModule("genhexkins", NAMES, DEFAULTS)
-    module.kins.type = KINEMATICS_BOTH
-    module.kins.joints = STRUTS
-    module.kins.forward = forward
-    module.kins.inverse = inverse
+cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
+    cdef int n
+    cdef int result = pose_of_struts(kins, joints, pose)
+    kins.output[FORWARD_FAILED] = result != 0
+    for n in range(STRUTS):
+        kins.output[SHOWN_POSE + n] = pose[n]
+    return result
+
+
+def create(coordinates: str | None = None, sparm: str = "") -> KinematicsModule:
+    cdef KinematicsModule module = KinematicsModule("genhexkins", STRUTS, PARAMETERS, OUTPUTS)
+    module.offer_switchable(forward, inverse, joint_letters("genhexkins", coordinates, "xyzabc", STRUTS), sparm)
     return module
 
 
 def load(host, args: dict) -> None:
-    refuse_arguments("genhexkins", args)
-    provide(host, create())
+    check_arguments("genhexkins", args, ("coordinates", "sparm"))
+    provide(host, create(**args))

@@ -3,14 +3,15 @@
 
 Lengths (pins D1 .. D6): D1 height of the inner arm, D2 its length, D3 height of the outer arm above the inner one,
 D4 its length, D5 height of the outer arm above the tool's tip when joint 2 is 0, D6 distance of the tip from the
-wrist's axis. The elbow stays on the side where it is: the sign of joint 1.
+wrist's axis. The elbow stays on the side where it is: the sign of joint 1. Switchable to the identity.
 """
 
-from libc.math cimport M_PI, acos, atan2, cos, sin
+from libc.math cimport acos, atan2, cos, sin
 
-from emcmot.kins.kinematics cimport KINEMATICS_BOTH, Kinematics, KinematicsModule
+from emcmot.kins.frames cimport DEGREE, nearest_turn
+from emcmot.kins.kinematics cimport Kinematics, KinematicsModule
 
-from emcmot.kins.kinematics import provide, refuse_arguments
+from emcmot.kins.kinematics import check_arguments, joint_letters, provide
 
 cdef enum:               # parameters
     D1 = 0
@@ -21,9 +22,7 @@ cdef enum:               # parameters
     D6 = 5
 
 JOINTS = 6
-NAMES = ("D1", "D2", "D3", "D4", "D5", "D6")
-DEFAULTS = (490.0, 340.0, 50.0, 250.0, 50.0, 50.0)
-cdef double DEGREE = M_PI / 180.0
+PARAMETERS = (("D1", 490.0), ("D2", 340.0), ("D3", 50.0), ("D4", 250.0), ("D5", 50.0), ("D6", 50.0))
 
 
 cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
@@ -52,7 +51,7 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
         return -1
     elbow = acos(cosine) if joints[1] >= 0.0 else -acos(cosine)
     inner = atan2(y, x) - atan2(d[D4] * sin(elbow), d[D2] + d[D4] * cos(elbow))
-    joints[0] = nearest(inner / DEGREE, joints[0])
+    joints[0] = nearest_turn(inner / DEGREE, joints[0])
     joints[1] = elbow / DEGREE
     joints[2] = d[D1] + d[D3] - d[D5] - pose[2]
     joints[3] = pose[5] - joints[0] - joints[1]
@@ -61,24 +60,12 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
     return 0
 
 
-cdef double nearest(double angle, double to) noexcept nogil:
-    """The same direction, less than half a turn from where the joint is."""
-    while angle - to > 180.0:
-        angle -= 360.0
-    while angle - to < -180.0:
-        angle += 360.0
-    return angle
-
-
-def create() -> KinematicsModule:
-    cdef KinematicsModule module = KinematicsModule("scarakins", NAMES, DEFAULTS)
-    module.kins.type = KINEMATICS_BOTH
-    module.kins.joints = JOINTS
-    module.kins.forward = forward
-    module.kins.inverse = inverse
+def create(coordinates: str | None = None, sparm: str = "") -> KinematicsModule:
+    cdef KinematicsModule module = KinematicsModule("scarakins", JOINTS, PARAMETERS)
+    module.offer_switchable(forward, inverse, joint_letters("scarakins", coordinates, "xyzabc", JOINTS), sparm)
     return module
 
 
 def load(host, args: dict) -> None:
-    refuse_arguments("scarakins", args)
-    provide(host, create())
+    check_arguments("scarakins", args, ("coordinates", "sparm"))
+    provide(host, create(**args))

@@ -10,11 +10,12 @@ from emcmot.kins.kinematics cimport (
     KINEMATICS_FORWARD_ONLY,
     KINEMATICS_IDENTITY,
     KINEMATICS_INVERSE_ONLY,
-    Kinematics,
     KinematicsModule,
+    identity_forward,
+    identity_inverse,
 )
 
-from emcmot.kins.kinematics import AXIS_LETTERS, provide
+from emcmot.kins.kinematics import AXIS_LETTERS, check_arguments, joint_letters, provide
 from nml.errors import HalError
 
 TYPES = {
@@ -23,46 +24,23 @@ TYPES = {
     "i": KINEMATICS_INVERSE_ONLY,
     "b": KINEMATICS_BOTH,
 }
-ARGUMENTS = ("coordinates", "kinstype")
-
-
-cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
-    cdef int i
-    for i in range(kins.joints - 1, -1, -1):  # the first joint of a letter has the last word
-        pose[kins.axis_of_joint[i]] = joints[i]
-    return 0
-
-
-cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
-    cdef int i
-    for i in range(kins.joints):
-        joints[i] = pose[kins.axis_of_joint[i]]
-    return 0
 
 
 def create(coordinates: str | None = None, kinstype: str = "1") -> KinematicsModule:
     """The kinematics of these coordinates; HalError for letters that are no axes."""
-    cdef KinematicsModule module = KinematicsModule("trivkins")
-    letters = (coordinates or AXIS_LETTERS).replace(" ", "").lower()
-    module.flexible = coordinates is None
-    unknown = sorted(set(letters) - set(AXIS_LETTERS))
-    if unknown or not 1 <= len(letters) <= 16:
-        raise HalError(f"trivkins: coordinates={coordinates}: 1 to 16 letters of {AXIS_LETTERS} are allowed")
+    letters = joint_letters("trivkins", coordinates, "", repeats=True) if coordinates else AXIS_LETTERS
+    cdef KinematicsModule module = KinematicsModule("trivkins", len(letters))
     kind = TYPES.get(kinstype[:1].lower())
     if kind is None:
         raise HalError(f"trivkins: kinstype={kinstype}: 1, forward, inverse or both are allowed")
     module.kins.type = kind
-    module.kins.linear = 1
-    module.kins.joints = len(letters)
-    for index, letter in enumerate(letters):
-        module.kins.axis_of_joint[index] = AXIS_LETTERS.index(letter)
-    module.kins.forward = forward
-    module.kins.inverse = inverse
+    module.fewest_joints = 0 if coordinates else 1
+    module.set_letters(letters)
+    axes = {joint: AXIS_LETTERS.index(letter) for joint, letter in enumerate(letters)}
+    module.offer(identity_forward, identity_inverse, axes, linear=True)
     return module
 
 
 def load(host, args: dict) -> None:
-    unknown = set(args) - set(ARGUMENTS)
-    if unknown:
-        raise HalError(f"trivkins: unknown argument {', '.join(sorted(unknown))}; known: {', '.join(ARGUMENTS)}")
+    check_arguments("trivkins", args, ("coordinates", "kinstype"))
     provide(host, create(**args))

@@ -101,6 +101,10 @@ class MotCommand(IntEnum):
     SET_HEARTBEAT_TIMEOUT = 100  # ours: `timeout` s without a command or HEARTBEAT from task stops the machine; 0: off
     HEARTBEAT = 101  # ours: task is alive; does nothing else
     SET_UNITS = 102  # ours: `scale` millimetres are one lu; for the pins motion.feed-mm-per-minute and their like
+    SET_JERK = 103  # these four are LinuxCNC 2.10's, which has no fixed numbers yet
+    SET_PLANNER_TYPE = 104
+    SET_JOINT_JERK_LIMIT = 105
+    SET_AXIS_JERK_LIMIT = 106
 
 
 class MotCommandStatus(IntEnum):
@@ -177,7 +181,7 @@ class EMCMOT_COMMAND(Command, type_id=3001):
     acc = double(unit="lu/s^2", doc="largest path acceleration")
     jerk = double(unit="lu/s^3", doc="largest path jerk; 0: none")
     termCond = integer(doc="TermCond, for this move and the following ones")
-    mode = integer(doc="on or off of an enable command; joint jog (1) or axis jog (0) of a jog command")
+    mode = integer(doc="on or off of an enable command; joint jog (1) or axis jog (0) of a jog command; planner type")
     tolerance = double(unit="lu", doc="largest path deviation (G64 P)")
     spindlesync = double(unit="lu/rev", doc="SET_SPINDLESYNC")
     scale = double(doc="override factor, or scale of a RIGID_TAP retract")
@@ -242,6 +246,7 @@ class EMCMOT_JOINT_STATUS(Struct):
     max_ferror = double(unit="lu, deg")
     vel_limit = double(unit="lu/s, deg/s")
     acc_limit = double(unit="lu/s^2, deg/s^2")
+    jerk_limit = double(unit="lu/s^3, deg/s^3", doc="0: none")
 
 
 class EMCMOT_AXIS_STATUS(Struct):
@@ -252,6 +257,7 @@ class EMCMOT_AXIS_STATUS(Struct):
     min_pos_limit = double(unit="lu, deg")
     vel_limit = double(unit="lu/s, deg/s")
     acc_limit = double(unit="lu/s^2, deg/s^2")
+    jerk_limit = double(unit="lu/s^3, deg/s^3", doc="0: none")
 
 
 class EMCMOT_SPINDLE_STATUS(Struct):
@@ -302,6 +308,8 @@ class EMCMOT_STATUS(Status, type_id=3002):
     paused = integer()
     stepping = integer()
     reverse_run = integer()
+    planner_type = integer(doc="0 trapezoidal, 1 with limited jerk")
+    kinematics_way = integer(doc="type of switchable kinematics in use, as motion.switchkins-type")
     motionType = integer()
     jogging_active = integer()
     on_soft_limit = integer()
@@ -323,6 +331,7 @@ class EMCMOT_STATUS(Status, type_id=3002):
     max_feed_scale = double()
     vel = double(unit="lu/s", doc="MAX_LINEAR_VELOCITY cap")
     acc = double(unit="lu/s^2")
+    jerk = double(unit="lu/s^3", doc="cap on the path's jerk; 0: none")
     current_vel = double(unit="lu/s")
     requested_vel = double(unit="lu/s")
     distance_to_go = double(unit="lu")

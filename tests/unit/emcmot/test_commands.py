@@ -97,6 +97,10 @@ EXPECTED = {
     "SET_HEARTBEAT_TIMEOUT": ({"timeout": 0.0}, STATES),
     "HEARTBEAT": ({}, STATES),
     "SET_UNITS": ({"scale": 1.0}, STATES),
+    "SET_JERK": ({"jerk": 1e5}, STATES),
+    "SET_PLANNER_TYPE": ({"mode": 1}, STATES),
+    "SET_JOINT_JERK_LIMIT": ({"jerk": 1e5}, STATES),
+    "SET_AXIS_JERK_LIMIT": ({"jerk": 1e5}, STATES),
 }
 # what depends on more than the mode has its own tests: test_spindle_sync.py
 ELSEWHERE = {"RIGID_TAP"}

@@ -1,0 +1,6 @@
+"""Types of tablekins; the texts are in ``tablekins.pyx``."""
+
+from emcmot.kins.kinematics import KinematicsModule
+
+def create(tilting_axis: str, coordinates: str | None = None, sparm: str = "") -> KinematicsModule: ...
+def create_dual() -> KinematicsModule: ...
