@@ -7,6 +7,7 @@ threads of their own, so that nothing that task takes long for delays a stop: ``
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import enum
 import threading
 from collections import deque
@@ -29,7 +30,7 @@ BRISK = 0.02  # s between statuses that are passed on meanwhile
 SERIALS_KEPT = 512
 SILENT_AFTER = 1.5  # s without a new status
 PATIENCE = 600.0  # s that an order may take
-LAST_WORDS = 0.1  # s in which the messages of an order that has failed arrive
+LAST_WORDS = 0.06  # s in which the messages of an order that has failed arrive
 SETTLED = 2.0  # s until a state that an order has brought about is seen
 
 
@@ -221,11 +222,26 @@ class Machine:
                 self._waiting.remove(waiting)
         if result == linuxcnc.RCS_ERROR:
             await asyncio.sleep(LAST_WORDS)
+        self._complain(serial, result)
+        return serial
+
+    async def adjust(self, name: str, *arguments: Any, lane: Lane = Lane.ORDERS) -> None:
+        """Give an order that acts at once, also while a program runs, whose end is then not the order's."""
+        serial = await self.send(name, *arguments, lane=lane)
+        if self.values["interp_state"] == linuxcnc.INTERP_IDLE and self.values["inpos"]:
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(SETTLED):
+                    await self.finished(serial)
+        else:
+            await asyncio.sleep(LAST_WORDS)
+            self._complain(serial, linuxcnc.RCS_DONE)
+
+    def _complain(self, serial: int, result: int) -> None:
+        """CallError if an order has failed or task had something to say against it."""
         texts = self._texts.pop(serial, [])
         if result == linuxcnc.RCS_ERROR or texts:
             said = "; ".join(texts)
             raise CallError("machine", "{reason}" if said else "the machine refused it", reason=said, messages=texts)
-        return serial
 
     def only_ours(self, first: int, last: int) -> bool:
         """Whether every order from one serial number to another came from this server and none of them failed."""

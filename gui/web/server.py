@@ -14,6 +14,8 @@ import gui.web.methods  # noqa: F401  registers what clients may call
 import linuxcnc
 from gui.web import dialogs, displaykeys, texts, tooltable
 from gui.web.access import Access
+from gui.web.client import Client
+from gui.web.halview import HalView
 from gui.web.hub import Hub
 from gui.web.jogging import BEAT_INTERVAL, BEAT_TIMEOUT, Jogging
 from gui.web.machine import Machine
@@ -21,9 +23,13 @@ from gui.web.messages import Messages
 from gui.web.preview import Preview
 from gui.web.programfolder import ProgramFolder, version_of
 from gui.web.programs import Programs
+from gui.web.scope import Scope
 from gui.web.settings import Settings
 from gui.web.state import State
 from gui.web.store import MdiHistory, Preferences
+from gui.web.system import Processes
+from hal.module import door
+from nml.errors import HalError
 from nml.inifile import IniFile
 
 log = logging.getLogger(__name__)
@@ -58,7 +64,19 @@ class Server:
         self.parameter_file: Path | None = ini.path("RS274NGC", "PARAMETER_FILE", None)
         self.dialogs = dialogs.Dialogs(dialogs.questions(ini), self.state, self.messages.add)
         self.toolchange = dialogs.ToolChange(self.state)
+        self.hal = self._hal_view()
+        self.scope: Scope | None = None
+        self.scope_owner: Client | None = None
+        self.processes = Processes()
         self._tasks: list[asyncio.Task[None]] = []
+
+    def _hal_view(self) -> HalView | None:
+        """The HAL of this computer; none where only the NML buffers of a machine elsewhere are in reach."""
+        try:
+            return HalView(door(), self.settings.hal_write)
+        except HalError as reason:
+            log.warning("no HAL pages: %s", reason)
+            return None
 
     async def start(self) -> None:
         """Begin to follow the machine; then run the HAL files that wait for the display's pins."""
@@ -88,6 +106,8 @@ class Server:
         for task in self._tasks:
             task.cancel()
         self.preview.cancel()
+        if self.scope is not None:
+            await asyncio.to_thread(self.scope.stop)
         await asyncio.to_thread(self.machine.stop)
 
     def greeting(self) -> dict[str, Any]:

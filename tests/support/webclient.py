@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import aiohttp
 import msgpack
 
 from nml import namespace
-from tests.support.machine import PATIENCE, Run, wait_until
+from tests.support.machine import PATIENCE, Run, copy_mill, running, wait_until
 
 
 class Refused(Exception):
@@ -146,15 +147,14 @@ class WebClient:
     def cut(self) -> None:
         """The network is gone: nothing is sent or read any more, and nobody says goodbye."""
         self._beating.clear()
-        transport = self.socket.get_extra_info("socket")
-        assert transport is not None
         self.run(self._abandon())
 
     async def _abandon(self) -> None:
         self._reader.cancel()
         self._beater.cancel()
-        transport = self.socket._conn.transport  # type: ignore[union-attr]
-        transport.pause_reading()
+        assert self.socket._conn is not None
+        assert self.socket._conn.transport is not None
+        self.socket._conn.transport.pause_reading()
 
     def ready(self) -> None:
         """Take the controls, switch on, home all."""
@@ -177,9 +177,18 @@ class WebClient:
             return answer.status
 
 
-def copy_programs(folder: Path, **programs: str) -> Path:
-    """A program folder with these programs (name without .ngc: text)."""
-    folder.mkdir(exist_ok=True)
+@contextmanager
+def web_mill(
+    folder: Path, *, changes: dict[str, str] | None = None, extra: str = "", hal: str = "", **programs: str
+) -> Iterator[tuple[Run, int]]:
+    """A mill with the web display, (run, port); ``extra``: more INI lines, ``programs``: texts of NAME.ngc."""
+    nc_files = folder / "nc"
+    nc_files.mkdir(exist_ok=True)
     for name, text in programs.items():
-        (folder / f"{name}.ngc").write_text(text)
-    return folder
+        (nc_files / f"{name}.ngc").write_text(text)
+    wanted = {"DISPLAY.DISPLAY": "web --port 0 --no-browser", "DISPLAY.PROGRAM_PREFIX": str(nc_files)}
+    ini = copy_mill(folder, changes=wanted | (changes or {}), hal=hal)
+    if extra:
+        ini.write_text(f"{ini.read_text()}\n{extra}\n")
+    with running(ini) as run:
+        yield run, web_port(run)

@@ -3,6 +3,7 @@
 from gui.web.methods import (
     control,
     cutting,
+    halpages,
     jogs,
     mdi,
     misc,
@@ -13,4 +14,4 @@ from gui.web.methods import (
     tools,
 )
 
-__all__ = ["control", "cutting", "jogs", "mdi", "misc", "offsets", "operating", "path", "programs", "tools"]
+__all__ = ["control", "cutting", "halpages", "jogs", "mdi", "misc", "offsets", "operating", "path", "programs", "tools"]

@@ -29,14 +29,14 @@ def _spindle(caller: Caller, number: int) -> dict[str, float]:
 
 @method("override.feed", Right.CONTROLS)
 async def feed(caller: Caller, value: float) -> None:
-    await caller.server.machine.order(
+    await caller.server.machine.adjust(
         "feedrate", _within("value", value, 0.0, caller.server.config["overrides"]["feed_max"])
     )
 
 
 @method("override.rapid", Right.CONTROLS)
 async def rapid(caller: Caller, value: float) -> None:
-    await caller.server.machine.order(
+    await caller.server.machine.adjust(
         "rapidrate", _within("value", value, 0.0, caller.server.config["overrides"]["rapid_max"])
     )
 
@@ -44,23 +44,23 @@ async def rapid(caller: Caller, value: float) -> None:
 @method("override.spindle", Right.CONTROLS)
 async def spindle_override(caller: Caller, value: float, spindle: int = 0) -> None:
     one = _spindle(caller, spindle)
-    await caller.server.machine.order(
+    await caller.server.machine.adjust(
         "spindleoverride", _within("value", value, one["min_override"], one["max_override"]), spindle
     )
 
 
 @method("override.max_velocity", Right.CONTROLS)
 async def max_velocity(caller: Caller, value: float) -> None:
-    await caller.server.machine.order("maxvel", _within("value", value, 0.0, 1e9))
+    await caller.server.machine.adjust("maxvel", _within("value", value, 0.0, 1e9))
 
 
 @method("override.enable", Right.CONTROLS)
 async def enable(caller: Caller, what: str, on: bool, spindle: int = 0) -> None:
     if what == "spindle":
         _spindle(caller, spindle)
-        await caller.server.machine.order("set_spindle_override", int(on), spindle)
+        await caller.server.machine.adjust("set_spindle_override", int(on), spindle)
     elif what in ENABLES:
-        await caller.server.machine.order(ENABLES[what], int(on))
+        await caller.server.machine.adjust(ENABLES[what], int(on))
     else:
         raise CallError("argument", "{argument} must be feed, spindle, hold or adaptive", argument="what")
 
@@ -78,50 +78,50 @@ async def spindle_on(caller: Caller, speed: float, direction: int = 1, spindle: 
 @method("spindle.off", Right.CONTROLS)
 async def spindle_off(caller: Caller, spindle: int = 0) -> None:
     _spindle(caller, spindle)
-    await caller.server.machine.order("spindle", linuxcnc.SPINDLE_OFF, spindle)
+    await caller.server.machine.adjust("spindle", linuxcnc.SPINDLE_OFF, spindle)
 
 
 @method("spindle.increase", Right.CONTROLS)
 async def spindle_increase(caller: Caller, spindle: int = 0) -> None:
     _spindle(caller, spindle)
-    await caller.server.machine.order("spindle", linuxcnc.SPINDLE_INCREASE, spindle)
+    await caller.server.machine.adjust("spindle", linuxcnc.SPINDLE_INCREASE, spindle)
 
 
 @method("spindle.decrease", Right.CONTROLS)
 async def spindle_decrease(caller: Caller, spindle: int = 0) -> None:
     _spindle(caller, spindle)
-    await caller.server.machine.order("spindle", linuxcnc.SPINDLE_DECREASE, spindle)
+    await caller.server.machine.adjust("spindle", linuxcnc.SPINDLE_DECREASE, spindle)
 
 
 @method("spindle.brake", Right.CONTROLS)
 async def brake(caller: Caller, on: bool, spindle: int = 0) -> None:
     _spindle(caller, spindle)
     action = linuxcnc.BRAKE_ENGAGE if on else linuxcnc.BRAKE_RELEASE
-    await caller.server.machine.order("brake", action, spindle)
+    await caller.server.machine.adjust("brake", action, spindle)
 
 
 @method("coolant.flood", Right.CONTROLS)
 async def flood(caller: Caller, on: bool) -> None:
-    await caller.server.machine.order("flood", int(on))
+    await caller.server.machine.adjust("flood", int(on))
 
 
 @method("coolant.mist", Right.CONTROLS)
 async def mist(caller: Caller, on: bool) -> None:
-    await caller.server.machine.order("mist", int(on))
+    await caller.server.machine.adjust("mist", int(on))
 
 
 @method("lube", Right.CONTROLS)
 async def lube(caller: Caller, on: bool) -> None:
-    await caller.server.machine.order("lube", int(on))
+    await caller.server.machine.adjust("lube", int(on))
 
 
 @method("output.digital", Right.CONTROLS)
 async def digital(caller: Caller, index: int, value: bool) -> None:
     _within("index", index, 0, len(caller.server.machine.values["dout"]) - 1)
-    await caller.server.machine.order("set_digital_output", index, int(value))
+    await caller.server.machine.adjust("set_digital_output", index, int(value))
 
 
 @method("output.analog", Right.CONTROLS)
 async def analog(caller: Caller, index: int, value: float) -> None:
     _within("index", index, 0, len(caller.server.machine.values["aout"]) - 1)
-    await caller.server.machine.order("set_analog_output", index, value)
+    await caller.server.machine.adjust("set_analog_output", index, value)

@@ -30,7 +30,6 @@ async def command(caller: Caller, index: int) -> None:
         raise CallError("argument", "there is no such button", argument="index")
     for line in buttons[index]["commands"]:
         await execute(caller, line)
-        await idle(caller)
 
 
 @method("mdi.history", Right.ANYBODY)
@@ -50,11 +49,13 @@ async def execute(caller: Caller, line: str) -> int:
         raise CallError("state", "switch the machine on first")
     await caller.server.jogging.stop()
     await machine.mode(linuxcnc.MODE_MDI)
-    return await machine.order("mdi", line)
+    serial = await machine.order("mdi", line)
+    await idle(caller)
+    return serial
 
 
 async def idle(caller: Caller) -> None:
-    """Wait until nothing executes any more."""
+    """Wait until nothing executes any more; the end of an order is not seen when another came after it."""
     await caller.server.machine.reach(
         lambda values: (
             values["interp_state"] == linuxcnc.INTERP_IDLE and values["inpos"] and not values["queued_mdi_commands"]

@@ -45,7 +45,7 @@ async def abort(caller: Caller) -> None:
     machine = caller.server.machine
     caller.server.jogging.drop_all()
     machine.give_up()
-    await machine.order("abort", lane=Lane.URGENT)
+    await machine.adjust("abort", lane=Lane.URGENT)
 
 
 @method("machine.mode", Right.CONTROLS)
@@ -81,7 +81,7 @@ async def teleop(caller: Caller, on: bool) -> None:
 
 @method("debug", Right.CONTROLS)
 async def debug(caller: Caller, flags: int) -> None:
-    await caller.server.machine.order("debug", flags)
+    await caller.server.machine.adjust("debug", flags)
 
 
 async def set_teleop(caller: Caller, on: bool) -> None:

@@ -101,7 +101,7 @@ async def step(caller: Caller) -> None:
 
 @method("program.pause", Right.OPERATOR)
 async def pause(caller: Caller) -> None:
-    await caller.server.machine.order("auto", linuxcnc.AUTO_PAUSE, lane=Lane.URGENT)
+    await caller.server.machine.adjust("auto", linuxcnc.AUTO_PAUSE, lane=Lane.URGENT)
 
 
 @method("program.resume", Right.CONTROLS)
@@ -121,12 +121,12 @@ async def forward(caller: Caller) -> None:
 
 @method("program.optional_stop", Right.CONTROLS)
 async def optional_stop(caller: Caller, on: bool) -> None:
-    await caller.server.machine.order("set_optional_stop", int(on))
+    await caller.server.machine.adjust("set_optional_stop", int(on))
 
 
 @method("program.block_delete", Right.CONTROLS)
 async def block_delete(caller: Caller, on: bool) -> None:
-    await caller.server.machine.order("set_block_delete", int(on))
+    await caller.server.machine.adjust("set_block_delete", int(on))
 
 
 def _idle(caller: Caller) -> None:

@@ -66,7 +66,10 @@ export class App {
   showError(error) {
     // What the machine said arrives as a message too; do not say it twice.
     if (error instanceof CallError && error.code === "machine" && error.details.messages?.length) return;
-    this.notify("error", error.message || String(error));
+    if (error instanceof CallError && error.code === "aborted") return; // the operator's own doing
+    const text = error.message || String(error);
+    this.notify("error", text);
+    this.store.merge({ message_list: [...(this.v.message_list ?? []), { id: 0, kind: "error", text, time: Date.now() / 1000 }] });
   }
 
   /**

@@ -26,6 +26,7 @@ const PATHS = {
   step: "M5 4l10 8-10 8zM18 4v16",
   folder: "M3 6h6l2 2h10v11H3z",
   edit: "M4 20l1-5L16 4l4 4L9 19zM14 6l4 4",
+  rename: "M3 18l4-12 4 12M4.500 14h5M14 12.500a3 3 0 1 0 5 0 3 3 0 0 0-5 0zM19.500 10v8",
   save: "M4 4h13l3 3v13H4zM8 4v5h8V4M8 20v-6h8v6",
   upload: "M12 16V4M12 4l-5 5M12 4l5 5M4 16v4h16v-4",
   reload: "M20 12a8 8 0 1 1-2.500-5.800M20 3v5h-5",

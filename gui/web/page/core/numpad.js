@@ -8,10 +8,10 @@ import { icon } from "./icons.js";
 const KEYS = ["7", "8", "9", "/", "4", "5", "6", "*", "1", "2", "3", "-", "0", ".", "⌫", "+"];
 
 /**
- * @param {string} label @param {string} value first text @param {"mm" | "inch"} unit @param {(valid: boolean) => void} [changed]
+ * @param {string} label @param {string} value first text @param {"mm" | "inch"} unit
  * @returns {{element: HTMLElement, input: HTMLInputElement, value: () => number}}
  */
-export function numpad(label, value, unit, changed) {
+export function numpad(label, value, unit) {
   const result = h("output", { class: "mono result" });
   const input = /** @type {HTMLInputElement} */ (
     h("input", { type: "text", inputmode: "none", class: "number big", "aria-label": label, value, autocomplete: "off", oninput: () => update() })
@@ -22,7 +22,6 @@ export function numpad(label, value, unit, changed) {
     const valid = Number.isFinite(number);
     input.setAttribute("aria-invalid", String(!valid));
     setText(result, valid ? `= ${Math.round(number * 1e6) / 1e6}` : _("Not a number"));
-    changed?.(valid);
   }
   /** @param {string} key */
   function press(key) {

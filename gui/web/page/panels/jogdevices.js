@@ -2,7 +2,6 @@
 
 import { h, setPressed } from "../core/dom.js";
 import { _ } from "../core/i18n.js";
-import { icon } from "../core/icons.js";
 import { whyNotManual } from "../core/machine.js";
 
 /** @typedef {import("../core/app.js").App} App */
@@ -29,7 +28,7 @@ function keyboardSwitch(app) {
   const keys = /** @type {Record<string, any[]>} */ (config.machine_type !== "lathe" ? MILL_KEYS : config.back_tool_lathe ? BACK_LATHE_KEYS : LATHE_KEYS);
   let on = false;
   const button = app.gate(
-    h("button", { type: "button", id: "keyboard-jog", "aria-pressed": "false", onclick: () => set(!on) }, icon("mdi"), h("span", null, _("Keyboard"))),
+    h("button", { type: "button", id: "keyboard-jog", "aria-pressed": "false", onclick: () => set(!on) }, _("Keyboard")),
     whyNotManual,
   );
   const set = (/** @type {boolean} */ wanted) => {
@@ -60,7 +59,7 @@ function gamepadSwitch(app) {
   /** @type {Map<string, number>} share of full speed sent last, by axis letter */
   const moving = new Map();
   const button = app.gate(
-    h("button", { type: "button", id: "gamepad-jog", "aria-pressed": "false", onclick: () => set(!on) }, icon("target"), h("span", null, _("Gamepad"))),
+    h("button", { type: "button", id: "gamepad-jog", "aria-pressed": "false", onclick: () => set(!on) }, _("Gamepad")),
     whyNotManual,
   );
   const set = (/** @type {boolean} */ wanted) => {

@@ -2,6 +2,7 @@
 
 import { fill, h, select, setPressed, setText } from "../core/dom.js";
 import { _ } from "../core/i18n.js";
+import { icon } from "../core/icons.js";
 import { jogButton } from "../core/jog.js";
 import { confirm } from "../core/dialog.js";
 import { homingNow, whyNoControl, whyNoPower, whyNotHomed, whyNotManual } from "../core/machine.js";
@@ -31,9 +32,8 @@ registerPanel({
     const { config } = app.v;
     fill(
       root,
-      homing(app),
+      h("div", { class: "card stack" }, homing(app), touchOff(app, config)),
       jogging(app, config),
-      touchOff(app, config),
       h("div", { class: "grid two" }, ...config.spindles.map((/** @type {any} */ _limits, /** @type {number} */ n) => spindleCard(app, n)), coolantCard(app)),
       config.mdi_commands?.length ? mdiButtons(app, config.mdi_commands) : null,
     );
@@ -47,12 +47,12 @@ function homing(app) {
   const all = app.button("home", _("Home all"), () => app.act("home", { joint: -1 }), why, { id: "home-all", class: "primary" });
   const single = config.joints.map((/** @type {any} */ joint) => {
     const name = config.identity ? joint.axis : `J${joint.number}`;
-    const button = app.button("home", name, () => homeJoint(app, joint.number, name), why, { data: { joint: joint.number }, "aria-label": _("Home {name}", { name }) });
+    const button = app.button("", name, () => homeJoint(app, joint.number, name), why, { data: { joint: joint.number }, "aria-label": _("Home {name}", { name }) });
     app.store.watch(["homed"], (v) => button.classList.toggle("homed", Boolean(v.homed?.[joint.number])));
     return button;
   });
   app.store.watch(["all_homed"], (v) => all.classList.toggle("primary", !v.all_homed));
-  return h("div", { class: "card homing" }, h("h2", null, _("Homing")), h("div", { class: "row" }, all, ...single));
+  return h("div", { class: "row homing", role: "group", "aria-label": _("Homing") }, all, ...single);
 }
 
 /** @param {App} app @param {number} joint @param {string} name */
@@ -71,14 +71,13 @@ function jogging(app, config) {
   const limits = app.button("", _("Override limits"), () => app.act("override_limits"), (v) => whyNoControl(v) || whyNoPower(v) || ((v.limit ?? []).some(Boolean) ? "" : _("No joint is on a limit")));
   return h(
     "div",
-    { class: "card jogging" },
-    h("h2", null, _("Jog")),
+    { class: "card jogging", role: "group", "aria-label": _("Jog") },
     incrementButtons(app, config),
     ...pads,
     ...rows,
     ...free,
     ...speedSliders(app, config),
-    h("div", { class: "row" }, inputSwitches(app), limits),
+    h("div", { class: "row switches" }, inputSwitches(app), limits),
   );
 }
 
@@ -99,13 +98,14 @@ function incrementButtons(app, config) {
       {
         type: "button",
         "aria-pressed": String(increment === chosen),
+        "aria-label": increment.value === null ? _("Continuous, as long as the button is held") : null,
         onclick: () => {
           app.store.merge({ jog_increment: increment.value });
           remember("increment", n);
           buttons.forEach((/** @type {any} */ button, /** @type {number} */ k) => setPressed(button, k === n));
         },
       },
-      increment.value === null ? _("Continuous") : increment.text,
+      increment.value === null ? _("Hold") : increment.text,
     ),
   );
   return h("div", { class: "segments increments", role: "group", "aria-label": _("Jog increment") }, buttons);
@@ -192,10 +192,10 @@ function speedSlider(app, kind, limits) {
 function touchOff(app, config) {
   const why = (/** @type {any} */ v) => whyNotHomed(v);
   const axes = config.axes.map((/** @type {any} */ axis) =>
-    app.button("touchoff", axis.letter, () => touchOffAxis(app, axis), why, { "aria-label": _("Touch off {axis}", { axis: axis.letter }), data: { touchoff: axis.letter } }),
+    app.button("", axis.letter, () => touchOffAxis(app, axis), why, { "aria-label": _("Touch off {axis}", { axis: axis.letter }), data: { touchoff: axis.letter } }),
   );
-  const tool = app.button("tools", _("Tool"), () => touchOffTool(app), (v) => why(v) || (v.tool_in_spindle ? "" : _("No tool is loaded")), { "aria-label": _("Touch off the tool"), data: { touchoff: "tool" } });
-  return h("div", { class: "card" }, h("h2", null, _("Touch off")), h("div", { class: "row" }, ...axes, tool));
+  const tool = app.button("", _("Tool"), () => touchOffTool(app), (v) => why(v) || (v.tool_in_spindle ? "" : _("No tool is loaded")), { "aria-label": _("Touch off the tool"), data: { touchoff: "tool" } });
+  return h("div", { class: "row touchoff", role: "group", "aria-label": _("Touch off") }, h("span", { class: "name" }, icon("touchoff"), _("Touch off")), ...axes, tool);
 }
 
 /** @param {App} app @param {any[]} commands */

@@ -37,7 +37,7 @@ registerPanel({
       if (!messages.length) fill(list, h("p", { class: "muted" }, _("No messages.")));
     };
     const older = async () => {
-      const first = app.v.message_list?.[0]?.id;
+      const first = app.v.message_list?.find((/** @type {any} */ one) => one.id)?.id; // the page's own have none
       const found = await app.call("messages.read", { ...(first ? { before: first } : {}), count: 100 }).catch(() => []);
       const messages = found.messages ?? found;
       if (!messages.length) app.notify("notice", _("There are no older messages."));

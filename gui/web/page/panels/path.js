@@ -41,6 +41,7 @@ registerPanel({
     receive(app, scene, data, line, () => drawLegend(legend, scene, data));
     follow(app, scene, data, line);
     watchNotice(app, data, notice);
+    scene.onresize = () => scene.touched || fitAll(app, scene, data);
     picking(app, scene, place);
     return {
       show() {
@@ -65,7 +66,7 @@ function toolbar(app, scene, data, recoloured) {
   const views = (lathe ? [[lathe, "XZ"], ["p", "P"]] : [["x", "X"], ["y", "Y"], ["z", "Z"], ["p", "P"]]).map(([name, text]) =>
     h("button", { type: "button", onclick: () => view(name), "aria-label": _("View {name}", { name: text }) }, text),
   );
-  const colouring = select([["kind", _("Colour: kind")], ["feed", _("Colour: feed")], ["tool", _("Colour: tool")]], recall("colouring", "kind"), (choice) => {
+  const colouring = select([["kind", _("By kind")], ["feed", _("By feed")], ["tool", _("By tool")]], recall("colouring", "kind"), (choice) => {
     remember("colouring", choice);
     scene.recolour(choice);
     recoloured();

@@ -82,7 +82,7 @@ function fileButtons(app, entry, changed, edit) {
     "span",
     { class: "row" },
     app.button("edit", _("Edit {name}", { name: entry.name }), () => edit(entry.path), whyNotWrite, { iconOnly: true, class: "plain" }),
-    app.button("reload", _("Rename {name}", { name: entry.name }), rename, whyNotWrite, { iconOnly: true, class: "plain wide-only" }),
+    app.button("rename", _("Rename {name}", { name: entry.name }), rename, whyNotWrite, { iconOnly: true, class: "plain wide-only" }),
     app.button("trash", _("Remove {name}", { name: entry.name }), remove, whyNotWrite, { iconOnly: true, class: "plain" }),
   );
 }

@@ -15,8 +15,8 @@ const PROGRAM_UNIT = /** @type {Record<number, "mm" | "inch">} */ ({ 1: "inch", 
 export function touchOffAxis(app, axis) {
   const { v } = app;
   let system = v.g5x_index ?? 1;
-  const pad = numpad(_("New position of {axis}", { axis: axis.letter }), "0", programUnit(v), (valid) => submit && (submit.disabled = !valid));
-  const { element } = openDialog(
+  const pad = numpad(_("New position of {axis}", { axis: axis.letter }), "0", programUnit(v));
+  openDialog(
     _("Touch off {axis}", { axis: axis.letter }),
     [
       h("p", { class: "muted" }, _("The tool stands at {axis} {position} now. What shall this position be?", { axis: axis.letter, position: coordinate(axis.index, v.work_position[axis.index], v) })),
@@ -29,12 +29,12 @@ export function touchOffAxis(app, axis) {
       {
         text: _("Touch off"), kind: "primary", submit: true,
         act: async (close) => {
-          if (await app.act("touchoff.axis", { axis: axis.letter, value: pad.value(), system })) close();
+          const value = pad.value();
+          if (Number.isFinite(value) && (await app.act("touchoff.axis", { axis: axis.letter, value, system }))) close();
         },
       },
     ],
   );
-  const submit = /** @type {HTMLButtonElement} */ (element.querySelector("button[type=submit]"));
 }
 
 /** @param {App} app */

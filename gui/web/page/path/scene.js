@@ -33,6 +33,10 @@ export class Scene {
   #lastFrame = 0;
   #trailCount = 0;
   visible = true;
+  /** Whether the operator turned or moved the picture, so that it is not fitted any more by itself. */
+  touched = false;
+  /** @type {() => void} called when the picture has another size */
+  onresize = () => {};
 
   /** @param {HTMLElement} place @param {import("./data.js").PathData} data */
   constructor(place, data) {
@@ -45,9 +49,7 @@ export class Scene {
     place.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -FAR, FAR);
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.enableDamping = false;
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls = this.#makeControls();
     this.lines = new THREE.Group();
     this.marks = new THREE.Group();
     this.scene.add(this.lines, this.marks);
@@ -56,7 +58,10 @@ export class Scene {
     this.#makeOverlays();
     this.#makeLimits();
     this.setTheme();
-    new ResizeObserver(() => this.#resize()).observe(place);
+    new ResizeObserver(() => {
+      this.#resize();
+      this.onresize();
+    }).observe(place);
     this.#resize();
     this.view("p");
   }
@@ -274,17 +279,23 @@ export class Scene {
     this.camera.up.set(up[0], up[1], up[2]);
     this.camera.position.set(target.x + from[0] * 1000, target.y + from[1] * 1000, target.z + from[2] * 1000);
     this.controls.dispose(); // it keeps the up vector that it was made with
-    const made = new OrbitControls(this.camera, this.renderer.domElement);
-    made.enableDamping = false;
-    made.target.copy(target);
-    made.addEventListener("change", () => this.draw());
-    this.controls = made;
-    made.update();
+    this.controls = this.#makeControls();
+    this.controls.target.copy(target);
+    this.controls.update();
     this.draw();
+  }
+
+  #makeControls() {
+    const controls = new OrbitControls(this.camera, this.renderer.domElement);
+    controls.enableDamping = false;
+    controls.addEventListener("change", () => this.draw());
+    controls.addEventListener("start", () => (this.touched = true));
+    return controls;
   }
 
   /** Show a box in full. @param {number[]} low @param {number[]} high */
   fit(low, high) {
+    this.touched = false;
     const centre = middle(low, high);
     const offset = this.camera.position.clone().sub(this.controls.target);
     this.controls.target.set(...centre);

@@ -1,0 +1,158 @@
+"""A whole machine operated through the web display's WebSocket, as its page does it."""
+
+import pytest
+
+import linuxcnc
+from tests.support.webclient import Refused, WebClient, web_mill
+
+pytestmark = pytest.mark.process
+
+SQUARE = "G21 G90\nG0 X10\nG1 F6000 X20\nY10\nX10\nY0\nM2\n"
+LONG = "G21 G90 G1 F600\n" + "".join(f"X{k % 2 * 50}\n" for k in range(1, 40)) + "M2\n"
+
+
+@pytest.fixture
+def client(tmp_path):
+    extra = "[MDI_COMMAND_LIST]\nMDI_COMMAND_A = G0 X3;G0 Y4,Go\\nthere"
+    with web_mill(tmp_path, extra=extra, square=SQUARE, long=LONG) as (_, port), WebClient(port) as page:
+        page.folder = tmp_path
+        yield page
+
+
+def test_a_page_switches_on_homes_and_shows_where_the_machine_is(client):
+    client.ready()
+    assert client.state["task_state"] == linuxcnc.STATE_ON
+    client.call("mdi.run", text="G0 X12.5 Y-3")
+    client.wait(lambda state: abs(state["work_position"][0] - 12.5) < 1e-9, "there")
+    assert client.hello["config"]["axes"][0]["letter"] == "X"
+    assert "G0" in client.state["gcode_text"]
+
+
+def test_touching_off_an_axis_moves_the_coordinate_system(client):
+    client.ready()
+    client.call("mdi.run", text="G0 X10")
+    client.call("touchoff.axis", axis="X", value="2+1/2")
+    client.wait(lambda state: abs(state["work_position"][0] - 2.5) < 1e-6, "touched off")
+    assert client.call("offsets.read")["systems"][0]["offset"][0] == pytest.approx(7.5)
+    client.call("offsets.write", system=3, values={"Y": 4.0, "R": 30.0})
+    client.wait(lambda _: client.call("offsets.read")["systems"][2]["rotation"] == 30.0, "written")
+    assert client.call("offsets.read")["systems"][2]["offset"][1] == pytest.approx(4.0)
+
+
+def test_touching_off_a_tool_writes_the_tool_table(client):
+    client.ready()
+    client.call("toolchange.load", tool=1)
+    client.wait(lambda state: state["tool_in_spindle"] == 1, "tool 1")
+    client.call("mdi.run", text="G0 Z-20")
+    client.call("touchoff.tool", axis="Z", value=5.0)
+    client.wait(lambda state: abs(state["work_position"][2] - 5.0) < 1e-6, "touched off")
+    client.wait(lambda _: client.call("tools.read")["tools"][0]["offset"][2] == pytest.approx(-25.0), "in the table")
+
+
+def test_a_program_is_uploaded_opened_run_paused_and_aborted(client):
+    client.ready()
+    assert client.upload("mine.ngc", LONG) == 200
+    client.call("program.open", path="mine.ngc")
+    client.wait(lambda state: state["program"], "loaded")
+    assert client.state["program"]["lines"] == LONG.count("\n")
+    assert client.call("program.lines", first=1, count=2)["lines"] == ["G21 G90 G1 F600", "X50"]
+    client.call("program.run")
+    client.wait(lambda state: state["motion_line"] >= 2, "running")
+    client.call("program.pause")
+    client.wait(lambda state: state["interp_state"] == linuxcnc.INTERP_PAUSED, "paused")
+    client.call("program.resume")
+    client.wait(lambda state: state["interp_state"] != linuxcnc.INTERP_PAUSED, "on")
+    client.call("override.feed", value=0.5)
+    client.wait(lambda state: state["feedrate"] == 0.5, "override")
+    client.call("machine.abort")
+    client.wait(lambda state: state["interp_state"] == linuxcnc.INTERP_IDLE and state["inpos"], "aborted")
+
+
+def test_steps_execute_a_line_each(client):
+    client.ready()
+    client.call("program.open", path="square.ngc")
+    for _ in range(3):
+        client.call("program.step")
+        client.wait(lambda state: state["inpos"], "stepped")
+    client.call("machine.abort")
+
+
+def test_a_wrong_line_of_mdi_comes_back_with_the_machines_words(client):
+    client.ready()
+    with pytest.raises(Refused) as refused:
+        client.call("mdi.run", text="G1 X5")
+    assert refused.value.code == "machine"
+    assert "zero feed" in refused.value.frame["text"]
+    assert client.messages[-1]["kind"] == "error"
+
+
+def test_overrides_beyond_the_ini_files_limit_are_refused(client):
+    client.ready()
+    with pytest.raises(Refused, match="0 to 2"):
+        client.call("override.feed", value=2.5)
+    assert client.state["feedrate"] == 1.0
+
+
+def test_spindle_and_coolant_obey(client):
+    client.ready()
+    client.call("spindle.on", speed=1200.0)
+    client.wait(lambda state: state["spindle"][0]["speed"] == 1200.0, "spindle")
+    client.call("spindle.off")
+    client.call("coolant.flood", on=True)
+    client.wait(lambda state: state["flood"] and state["spindle"][0]["direction"] == 0, "coolant")
+
+
+def test_the_buttons_of_the_mdi_command_list_run_all_their_lines(client):
+    client.ready()
+    assert client.hello["config"]["mdi_commands"][0]["label"] == "Go\nthere"
+    client.call("mdi.command", index=0)
+    client.wait(lambda state: state["position"][:2] == [3.0, 4.0], "there")
+
+
+def test_the_tool_table_is_written_as_a_whole_or_not_at_all(client):
+    client.ready()
+    table = client.call("tools.read")
+    table["tools"][0]["diameter"] = 12.25
+    fresh = client.call("tools.write", **table)
+    assert client.call("tools.read")["tools"][0]["diameter"] == 12.25
+    with pytest.raises(Refused) as refused:
+        client.call("tools.write", **table)
+    assert refused.value.code == "conflict"
+    table["tools"].append(dict(table["tools"][0]))
+    with pytest.raises(Refused, match="twice"):
+        client.call("tools.write", version=fresh["version"], tools=table["tools"])
+
+
+def test_the_editor_saves_and_notices_other_peoples_changes(client):
+    read = client.call("program.read", path="square.ngc")
+    version = client.call("program.save", path="square.ngc", text="M2\n", version=read["version"])["version"]
+    with pytest.raises(Refused) as refused:
+        client.call("program.save", path="square.ngc", text="M30\n", version=read["version"])
+    assert refused.value.frame["version"] == version
+
+
+def test_the_mdi_history_outlives_the_page(client):
+    client.ready()
+    client.call("mdi.run", text="G0 X1")
+    assert client.call("mdi.history")[-1] == "G0 X1"
+
+
+def test_the_preview_is_whole_and_comes_in_machine_coordinates(client):
+    client.ready()
+    client.call("path.subscribe")
+    client.call("program.open", path="square.ngc")
+    client.wait(lambda _: any(frame["t"] == "path_end" for frame in client.frames), "preview")
+    end = next(frame for frame in client.frames if frame["t"] == "path_end")
+    assert end["whole"], end
+    assert client.state["preview"]["state"] == "whole"
+
+
+def test_a_wrong_program_is_a_part_and_says_so(client):
+    client.ready()
+    client.upload("wrong.ngc", "G21 G90 G0 X5\nG1 X10 (no feed)\nM2\n")
+    client.call("path.subscribe")
+    client.call("program.open", path="wrong.ngc")
+    client.wait(lambda _: any(frame["t"] == "path_end" for frame in client.frames), "preview")
+    end = next(frame for frame in client.frames if frame["t"] == "path_end")
+    assert not end["whole"]
+    assert "line 2" in end["text"]
