@@ -1,5 +1,6 @@
 """The fast part of ``hal.component``: its pins and parameters as items of a mapping."""
 
+from hal._mapping cimport announce
 from hal._shm cimport Item, cell_value, set_cell
 
 
@@ -14,7 +15,7 @@ cdef class Items:
     cdef Item find(self, name):
         item = self.items.get(name)
         if item is None:
-            raise AttributeError(f"Pin '{name}' does not exist in this component")
+            raise AttributeError(f"Pin '{name}' does not exist")
         return <Item>item
 
     def __getitem__(self, name):
@@ -24,6 +25,7 @@ cdef class Items:
     def __setitem__(self, name, value):
         cdef Item item = self.find(name)
         set_cell(item.cell(), item.item.type, value)
+        announce(item.segment.at)
 
     def __contains__(self, name):
         return name in self.items

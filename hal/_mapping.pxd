@@ -3,6 +3,7 @@
 from libc.stdint cimport int32_t, int64_t, uint8_t, uint32_t, uint64_t
 
 from hal.cell cimport hal_cell
+from hal.port cimport hal_port
 
 cdef extern from "<pthread.h>" nogil:
     ctypedef struct pthread_mutex_t:
@@ -18,6 +19,7 @@ cdef enum:
     MAX_FUNCTS = 4096
     MAX_THREADS = 32
     MAX_CALLS = 1024  # functions in one thread
+    PORT_WORDS = 1 << 17  # 8 bytes each: buffers of all ports, with their headers
 
 # Every record starts with `state`: 0 is a free slot; it is stored last when a record is made and first when it is freed,
 # so a killed process leaves a whole record or none.
@@ -88,6 +90,8 @@ cdef struct hal_segment:
     int32_t host_pid
     uint64_t host_start
     int32_t recoveries  # times that a killed process was found to hold the mutex
+    int32_t changes  # a futex: moves when values have changed while somebody watches
+    int64_t watched_until_ns  # CLOCK_MONOTONIC: nobody watches later, so a killed watcher costs nothing
     int32_t used_comps, used_pins, used_params, used_signals, used_functs, used_threads  # slots ever used
     hal_word pin_words[MAX_PINS]
     hal_word param_words[MAX_PARAMS]
@@ -98,6 +102,7 @@ cdef struct hal_segment:
     hal_signal signals[MAX_SIGNALS]
     hal_funct functs[MAX_FUNCTS]
     hal_thread threads[MAX_THREADS]
+    uint64_t port_blocks[PORT_WORDS]  # hal_port records, one behind the other
 
 cdef extern from *:
     """
@@ -109,6 +114,44 @@ cdef extern from *:
     void store_link "store_release"(int64_t* where, int64_t value) nogil
     void store_magic "store_release"(uint64_t* where, uint64_t value) nogil
     uint64_t load_magic "load_acquire"(uint64_t* where) nogil
+    int64_t load_time "load_acquire"(int64_t* where) nogil
+    void store_time "store_release"(int64_t* where, int64_t value) nogil
+
+cdef extern from *:
+    """
+    #include <linux/futex.h>
+    #include <limits.h>
+    #include <sys/syscall.h>
+    #include <time.h>
+    #include <unistd.h>
+    static inline int64_t monotonic_ns(void) {
+        struct timespec t;
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        return t.tv_sec * 1000000000LL + t.tv_nsec;
+    }
+    static inline void wake_watchers(int32_t* word) {
+        __atomic_add_fetch(word, 1, __ATOMIC_SEQ_CST);
+        syscall(SYS_futex, word, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
+    }
+    static inline void sleep_on(int32_t* word, int32_t seen, int64_t ns) {
+        struct timespec t = {ns / 1000000000LL, ns % 1000000000LL};
+        syscall(SYS_futex, word, FUTEX_WAIT, seen, &t, NULL, 0);
+    }
+    """
+    int64_t monotonic_ns() nogil
+    void wake_watchers(int32_t* word) nogil
+    void sleep_on(int32_t* word, int32_t seen, int64_t ns) nogil
+
+
+cdef inline void announce(hal_segment* at) noexcept nogil:
+    """Values have changed: wake who watches. Costs one look at memory where nobody does."""
+    cdef int64_t until = load_time(&at.watched_until_ns)
+    if until == 0:
+        return
+    if monotonic_ns() > until:
+        store_time(&at.watched_until_ns, 0)
+    else:
+        wake_watchers(&at.changes)
 
 
 cdef inline hal_word* word_of(hal_segment* at, hal_item* item) noexcept nogil:
@@ -139,3 +182,4 @@ cdef class Mapping:
     cdef int take(self) except -1
     cdef void give(self) noexcept
     cdef void _repair(self)
+    cdef hal_port* new_port(self, uint32_t size) except NULL

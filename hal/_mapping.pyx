@@ -12,6 +12,8 @@ from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, mun
 from posix.time cimport CLOCK_REALTIME, clock_gettime, timespec
 from posix.unistd cimport close, ftruncate, getpid, usleep
 
+from hal.port cimport hal_port
+
 from nml.errors import HalError
 from nml.namespace import shm_name
 
@@ -46,9 +48,11 @@ cdef extern from "<pthread.h>" nogil:
     int pthread_mutex_consistent(pthread_mutex_t*)
 
 cdef enum:
-    VERSION = 1
+    VERSION = 2
     ATTACH_TRIES = 5000  # of 1 ms: how long another process may take to set the segment up
     LOCK_SECONDS = 5
+
+cdef int64_t WATCH_NS = 1_000_000_000
 
 cdef uint64_t MAGIC = 0x6C61682E636D6579
 
@@ -116,6 +120,7 @@ cdef class Mapping:
         self.at.version = VERSION
         self.at.size = sizeof(hal_segment)
         self.at.next_id = 2
+        (<hal_port*>self.at.port_blocks).room = sizeof(self.at.port_blocks) - sizeof(hal_port)
         store_magic(&self.at.magic, MAGIC)
 
     def __dealloc__(self):
@@ -176,6 +181,44 @@ cdef class Mapping:
             if signal and not self.at.signals[signal - 1].head.state:
                 signal = self.at.pins[i].signal = 0
             point(self.at, &self.at.pins[i], signal)
+
+    # ---- waiting for changes ----
+
+    def changes(self) -> int:
+        """Begin to watch: a count that moves with every change of a value from now on, for `WATCH_NS`."""
+        store_time(&self.at.watched_until_ns, monotonic_ns() + WATCH_NS)
+        return load_state(&self.at.changes)
+
+    def sleep_unchanged(self, int seen, double seconds) -> None:
+        """Sleep until the count is no more what `changes` gave, half of the watch's time at most."""
+        cdef int64_t ns = min(<int64_t>(max(seconds, 0.0) * 1e9), WATCH_NS // 2)
+        with nogil:
+            sleep_on(&self.at.changes, seen, ns)
+
+    # ---- buffers of ports ----
+
+    cdef hal_port* new_port(self, uint32_t size) except NULL:
+        """A buffer of that many bytes; the caller holds the mutex."""
+        cdef char* end = <char*>self.at.port_blocks + sizeof(self.at.port_blocks)
+        cdef hal_port* block = <hal_port*>self.at.port_blocks
+        cdef uint32_t wanted = (size + 7) & ~7
+        cdef hal_port* after
+        while <char*>block < end:
+            after = <hal_port*>(block.bytes + block.room)
+            while block.size == 0 and <char*>after < end and after.size == 0:  # free neighbours become one
+                block.room += sizeof(hal_port) + after.room
+                after = <hal_port*>(block.bytes + block.room)
+            if block.size == 0 and block.room >= wanted:
+                if block.room >= wanted + 2 * sizeof(hal_port):
+                    after = <hal_port*>(block.bytes + wanted)
+                    after.room = block.room - wanted - sizeof(hal_port)
+                    after.size = 0
+                    block.room = wanted
+                block.read = block.written = 0
+                block.size = size
+                return block
+            block = after
+        raise HalError(f"no room for a port of {size} bytes: {sizeof(self.at.port_blocks)} are for all ports together", -12)
 
     # ---- header ----
 

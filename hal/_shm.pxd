@@ -4,6 +4,7 @@ from libc.stdint cimport int32_t
 
 from hal._mapping cimport Mapping, hal_comp, hal_funct, hal_item, hal_record, hal_segment, hal_signal, hal_thread, hal_word
 from hal.cell cimport hal_cell
+from hal.port cimport hal_port
 
 
 cdef class Segment(Mapping):
@@ -26,6 +27,10 @@ cdef class Item(Record):
     cdef hal_word* word
 
     cdef hal_cell* cell(self) noexcept
+
+
+cdef class Port(Item):
+    cdef hal_port* port(self) noexcept
 
 
 cdef class Signal(Record):

@@ -9,7 +9,10 @@ from libc.string cimport memcpy, memset, strcmp, strncpy
 
 from hal._mapping cimport (
     ARGS_SIZE, MAX_CALLS, MAX_COMPS, MAX_FUNCTS, MAX_PARAMS, MAX_PINS, MAX_SIGNALS, MAX_THREADS, NAME_SIZE, load_state,
-    point, store_state, word_of,
+    announce, point, store_link, store_state, word_of,
+)
+from hal.port cimport (
+    hal_port, port_clear, port_commit, port_peek, port_readable, port_write, port_writable,
 )
 
 from nml.errors import HalError
@@ -238,6 +241,11 @@ def newest_first(Comp comp):
     return -comp.comp.id
 
 
+cdef hal_port* port_at(hal_cell* cell) noexcept:
+    """The buffer that a port's cell names; NULL where it has none."""
+    return NULL if cell.l == 0 else <hal_port*>(<char*>cell + cell.l)
+
+
 cdef object cell_value(hal_cell* cell, int type):
     """A cell as a Python number."""
     if type == FLOAT:
@@ -252,7 +260,7 @@ cdef object cell_value(hal_cell* cell, int type):
         return cell.l
     if type == U64:
         return cell.k
-    return cell.s
+    return 0 if cell.l == 0 else port_at(cell).size
 
 
 cdef int set_cell(hal_cell* cell, int type, object value) except -1:
@@ -270,7 +278,7 @@ cdef int set_cell(hal_cell* cell, int type, object value) except -1:
     elif type == U64:
         cell.k = value
     else:
-        cell.s = value
+        raise HalError("a port has no value to set; 'sets' gives its signal a size")
     return 0
 
 
@@ -352,6 +360,7 @@ cdef class Item(Record):
 
     def set(self, value) -> None:
         set_cell(self.cell(), self.item.type, value)
+        announce(self.segment.at)
 
     value = property(get, set)
 
@@ -364,6 +373,7 @@ cdef class Item(Record):
         """Take the declared safe value, if there is one."""
         if self.item.has_safe:
             self.cell()[0] = self.item.safe
+            announce(self.segment.at)
 
     @property
     def signal(self):
@@ -379,9 +389,63 @@ cdef class Item(Record):
     def unlink(self) -> None:
         """Cut the pin off; it keeps the signal's last value."""
         if self.item.signal:
-            self.word.cell = self.cell()[0]
+            if self.item.type == PORT:
+                self.word.cell.k = 0  # the buffer is the signal's
+            else:
+                self.word.cell = self.cell()[0]
             point(self.segment.at, self.item, 0)
             self.item.signal = 0
+
+
+cdef class Port(Item):
+    """A pin of type port: one end of a stream of bytes."""
+
+    cdef hal_port* port(self) noexcept:
+        return port_at(self.cell())
+
+    def readable(self) -> int:
+        """Bytes that wait to be read."""
+        return port_readable(self.port())
+
+    def writable(self) -> int:
+        """Bytes for which there is room."""
+        return port_writable(self.port())
+
+    def size(self) -> int:
+        """Bytes of the buffer; 0 without one."""
+        return cell_value(self.cell(), PORT)
+
+    def peek(self, uint32_t count):
+        """The next bytes, which stay where they are; False where there are not as many."""
+        if port_readable(self.port()) < count:
+            return False
+        cdef bytearray into = bytearray(count)
+        port_peek(self.port(), <char*>into, count)
+        return bytes(into)
+
+    def peek_commit(self, uint32_t count) -> bool:
+        """Drop the next bytes; False where there are not as many."""
+        done = bool(port_commit(self.port(), count))
+        announce(self.segment.at)
+        return done
+
+    def read(self, uint32_t count):
+        """The next bytes; False where there are not as many."""
+        found = self.peek(count)
+        if found is not False:
+            self.peek_commit(count)
+        return found
+
+    def write(self, data) -> bool:
+        """Append bytes, or text as UTF-8; False, and nothing is written, where there is no room for all."""
+        cdef bytes raw = data.encode() if isinstance(data, str) else bytes(data)
+        done = bool(port_write(self.port(), raw, <uint32_t>len(raw)))
+        announce(self.segment.at)
+        return done
+
+    def clear(self) -> None:
+        """Drop all that waits; for the reader."""
+        port_clear(self.port())
 
 
 cdef class Signal(Record):
@@ -396,8 +460,21 @@ cdef class Signal(Record):
 
     def set(self, value) -> None:
         set_cell(self.cell, self.signal.type, value)
+        announce(self.segment.at)
 
     value = property(get, set)
+
+    def allot(self, uint32_t size) -> None:
+        """Give a port its buffer; the caller holds the mutex."""
+        cdef hal_port* port = self.segment.new_port(size)
+        store_link(&self.cell.l, <char*>port - <char*>self.cell)
+
+    def free(self) -> None:
+        """As of any record; a port's buffer is free again."""
+        if self.signal.type == PORT and self.cell.l != 0:
+            port_at(self.cell).size = 0
+            self.cell.l = 0
+        Record.free(self)
 
     def pins(self) -> list:
         """The pins linked to it, sorted by shown name."""

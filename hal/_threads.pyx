@@ -16,7 +16,7 @@ from libc.stdlib cimport calloc, free
 from posix.time cimport CLOCK_MONOTONIC, TIMER_ABSTIME, clock_gettime, clock_nanosleep, timespec
 from posix.unistd cimport usleep
 
-from hal._mapping cimport hal_segment, hal_thread
+from hal._mapping cimport announce, hal_segment, hal_thread
 from hal._shm cimport Item, Segment, Thread
 from hal.cell cimport hal_at, hal_cell, hal_function, hal_pin
 
@@ -87,6 +87,7 @@ cdef enum:
     GRACE_TRIES = 20000  # of 100 us: how long a function may take before its thread counts as stuck
 
 cdef double CATCH_UP_NS = 50e6  # host time
+cdef int64_t ANNOUNCE_NS = 900_000  # host time
 
 
 cdef struct Call:
@@ -107,8 +108,10 @@ cdef struct HalThread:
     Calls* calls
     hal_pin time
     hal_pin tmax
+    hal_pin beat
     double due  # nominal ns since the scheduler's origin
     int64_t period_ns
+    int64_t announced_ns  # host time
 
 cdef struct State:
     pthread_t thread
@@ -170,15 +173,22 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
     hal_at(thread.time).s = took
     if took > hal_at(thread.tmax).s:
         hal_at(thread.tmax).s = took
+    hal_at(thread.beat).u += 1
 
 
-cdef void run_cycle(HalThread* thread) noexcept nogil:
-    """`running` is set before the flags and lists are read, so who changes them need only wait for it to fall."""
+cdef void run_cycle(HalThread* thread, int64_t begun_ns) noexcept nogil:
+    """`running` is set before the flags and lists are read, so who changes them need only wait for it to fall.
+
+    Who waits for changes is woken once in `ANNOUNCE_NS` at most, whatever the thread's period.
+    """
     store_flag(&thread.record.running, 1)
     if load_int(&thread.segment.threads_running):
         run_calls(thread)
     store_count(&thread.record.cycles, thread.record.cycles + 1)
     store_flag(&thread.record.running, 0)
+    if begun_ns - thread.announced_ns >= ANNOUNCE_NS:
+        thread.announced_ns = begun_ns
+        announce(thread.segment)
 
 
 cdef HalThread* next_due(State* state) noexcept nogil:
@@ -218,7 +228,7 @@ cdef void* scheduler_main(void* arg) noexcept nogil:
         keep_time(state, thread, now - start)
         store_flag(&thread.record.running, 1)  # from here on `remove` waits
         pthread_mutex_unlock(&state.mutex)
-        run_cycle(thread)
+        run_cycle(thread, now)
     return NULL
 
 
@@ -235,10 +245,10 @@ cdef class NativeThread:
             raise MemoryError
         self.thread.calls = <Calls*>calloc(1, sizeof(Calls))
 
-    def __init__(self, Segment segment, Thread record, size_t time, size_t tmax):
+    def __init__(self, Segment segment, Thread record, size_t time, size_t tmax, size_t beat):
         self.segment, self.record = segment, record
         self.thread.segment, self.thread.record = segment.at, record.thread
-        self.thread.time, self.thread.tmax = <hal_pin>time, <hal_pin>tmax
+        self.thread.time, self.thread.tmax, self.thread.beat = <hal_pin>time, <hal_pin>tmax, <hal_pin>beat
         self.thread.period_ns = record.thread.period_ns
 
     def set_calls(self, list calls not None) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from hal import _shm
-from hal._shm import IN, IO, OUT, PARAM, PIN, RW, Comp, Item, Segment, Signal
+from hal._shm import IN, IO, OUT, PARAM, PIN, PORT, RW, Comp, Item, Segment, Signal
 from hal.process import alive, own_identity
 from hal.values import PIN_DIR_NAMES, TYPE_NAMES, parse_value
 from nml import clock
@@ -138,6 +138,8 @@ class Hal:
     def add_pin(self, comp: Comp, name: str, type_: int, direction: int) -> Item:
         if direction not in (IN, OUT, IO):
             raise HalError(f"pin '{name}': direction {direction} is none of HAL_IN, HAL_OUT, HAL_IO")
+        if type_ == PORT and direction == IO:
+            raise HalError(f"pin '{name}': a port is either HAL_IN or HAL_OUT")
         return self._add_item(PIN, comp, name, type_, direction)
 
     def add_param(self, comp: Comp, name: str, type_: int, direction: int) -> Item:
@@ -220,6 +222,8 @@ class Hal:
     def new_signal(self, name: str, type_: int) -> Signal:
         self._unlocked(LOCK_CONFIG, "making signals")
         check_name(name, "signal")
+        if type_ not in TYPE_NAMES:
+            raise HalError(f"signal '{name}': {type_} is no HAL type")
         with self.segment as segment:
             if segment.find_signal(name) is not None:
                 raise HalError(f"duplicate signal '{name}'")
@@ -240,13 +244,23 @@ class Hal:
             signal.free()
 
     def set_signal(self, name: str, text: str) -> None:
-        """``sets``: only where no pin drives the signal."""
+        """``sets``: only where no pin drives the signal; for a port the size of its buffer, once."""
         self._unlocked(LOCK_PARAMS, "setting signals")
         signal = self.signal(name)
+        if signal.type == PORT:
+            self._allot(signal, int(parse_value(PORT, text)))
+            return
         writer = signal.writer()
         if writer is not None:
             raise HalError(f"signal '{name}' already has writer(s): pin '{writer.shown}'")
         signal.set(parse_value(signal.type, text))
+
+    def _allot(self, signal: Signal, size: int) -> None:
+        with self.segment:
+            if signal.get():
+                raise HalError(f"port is already allocated with {signal.get()} bytes.")
+            if size:
+                signal.allot(size)
 
     def link(self, pin_name: str, signal_name: str) -> None:
         """Join a pin to a signal. The first pin brings its value with it."""
@@ -259,7 +273,7 @@ class Hal:
             if linked is not None:
                 raise HalError(f"pin '{pin_name}' is linked to '{linked.name}', cannot link to '{signal_name}'")
             self._check_net(signal_name, signal, [pin])
-            if not signal.pins():
+            if not signal.pins() and signal.type != PORT:
                 signal.set(pin.get())
             pin.link(signal)
 
@@ -313,6 +327,8 @@ class Hal:
                     f"of type '{TYPE_NAMES[pin.type]}'"
                 )
             self.check_writers(pin, signal_name, members)
+            if type_ == PORT and pin.dir == IN and any(other.dir == IN and other != pin for other in members):
+                raise HalError(f"Signal '{signal_name}' can not add pin '{pin.shown}', a port has one reader only")
             if pin not in members:
                 members.append(pin)
 

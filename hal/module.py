@@ -13,12 +13,16 @@ values, if they declared any.
 
 from __future__ import annotations
 
+import math
 import os
+import sys
+from collections.abc import Callable
+from enum import IntEnum
 from typing import Any
 
 from hal import _shm
 from hal._items import Items
-from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item, Port
 from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
 from hal.stream import Stream
 from hal.values import TYPE_NAMES
@@ -31,6 +35,30 @@ HAL_IN, HAL_OUT, HAL_IO = _shm.IN, _shm.OUT, _shm.IO
 HAL_RO, HAL_RW = _shm.RO, _shm.RW
 HAL_LOCK_NONE, HAL_LOCK_LOAD, HAL_LOCK_CONFIG, HAL_LOCK_PARAMS = LOCK_NONE, LOCK_LOAD, LOCK_CONFIG, LOCK_PARAMS
 HAL_LOCK_RUN, HAL_LOCK_TUNE, HAL_LOCK_ALL = LOCK_RUN, LOCK_TUNE, LOCK_ALL
+
+
+class Type(IntEnum):
+    """Types of pins and signals. SINT and UINT are as wide as LinuxCNC's own integer pins, to be linked with them."""
+
+    BOOL = BIT = _shm.BIT
+    REAL = FLOAT = _shm.FLOAT
+    SINT = S32 = _shm.S32
+    UINT = U32 = _shm.U32
+    PORT = _shm.PORT
+    S64 = _shm.S64
+    U64 = _shm.U64
+
+
+class Dir(IntEnum):
+    """Directions of pins and parameters."""
+
+    IN = _shm.IN
+    OUT = _shm.OUT
+    IO = _shm.IO
+    RO = _shm.RO
+    RW = _shm.RW
+
+
 MSG_NONE, MSG_ERR, MSG_WARN, MSG_INFO, MSG_DBG, MSG_ALL = range(6)
 is_kernelspace, is_userspace, is_rt, is_sim = 0, 1, 1, 1
 
@@ -49,15 +77,33 @@ def door() -> Hal:
     return hal
 
 
+class NotPossible(HalError, RuntimeError):
+    """What LinuxCNC's module raises as RuntimeError."""
+
+
+class NotThere(HalError, NameError):
+    """What LinuxCNC's module raises as NameError."""
+
+
+class Duplicate(HalError, ValueError):
+    """What LinuxCNC's module raises as ValueError."""
+
+
 class Pin(Item):
     """A pin or parameter of a component: what ``newpin`` and ``newparam`` return. ``get`` and ``set`` are native."""
 
-    def __init__(self, item: Item, is_pin: bool) -> None:
+    def __init__(self, item: Item, name: str, is_pin: bool) -> None:
         self.show_same(item)
+        self._name = name
         self._is_pin = is_pin
 
+    @property
+    def name(self) -> str:
+        """As it was given to ``newpin``, without the component's prefix."""
+        return self._name
+
     def get_name(self) -> str:
-        return self.name
+        return self._name
 
     def get_type(self) -> int:
         return self.type
@@ -70,15 +116,32 @@ class Pin(Item):
 
     def wait(self, value: Any, timeout: float | None = None) -> bool:
         """Wait until the pin has this value; False after ``timeout`` seconds of host time."""
-        end = None if timeout is None else clock.host_now() + timeout
-        while self.get() != value:
-            if end is not None and clock.host_now() > end:
+        return self._wait(lambda: self.get() == value, timeout)
+
+    def wait_change(self, timeout: float | None = None) -> bool:
+        """Wait until the pin has another value than now; False after ``timeout`` seconds of host time."""
+        before = self.get()
+        return self._wait(lambda: self.get() != before, timeout)
+
+    def _wait(self, fulfilled: Callable[[], bool], timeout: float | None) -> bool:
+        """Sleep until somebody has changed a value, and look again."""
+        segment = door().segment
+        end = math.inf if timeout is None else clock.host_now() + timeout
+        while True:
+            seen = segment.changes()
+            if fulfilled():
+                return True
+            left = end - clock.host_now()
+            if left <= 0:
                 return False
-            clock.host_sleep(0.0005)
-        return True
+            segment.sleep_unchanged(seen, min(left, 1.0))
 
     def __repr__(self) -> str:
-        return f"<hal.{'Pin' if self._is_pin else 'Param'} {self.name} {TYPE_NAMES[self.type]}>"
+        return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._name} {TYPE_NAMES[self.type]}>"
+
+
+class PortPin(Port, Pin):
+    """A pin of type HAL_PORT: a stream of bytes, see `hal._shm.Port`."""
 
 
 class component(Items):
@@ -93,6 +156,7 @@ class component(Items):
     def newpin(self, name: str, type: int, dir: int, safe: Any = None) -> Pin:
         """A pin ``PREFIX.name``; ``safe``: the value that it takes when this process dies."""
         self._check_alive()
+        self._check_free(name)
         item = self._hal.add_pin(self._record, f"{self._prefix}.{name}", type, dir)
         if safe is not None:
             item.set_safe(safe)
@@ -101,11 +165,16 @@ class component(Items):
     def newparam(self, name: str, type: int, dir: int) -> Pin:
         """A parameter ``PREFIX.name``."""
         self._check_alive()
+        self._check_free(name)
         return self._keep(name, self._hal.add_param(self._record, f"{self._prefix}.{name}", type, dir), False)
+
+    def _check_free(self, name: str) -> None:
+        if name in self:
+            raise Duplicate(f"Duplicate pin name '{name}'")
 
     def _keep(self, name: str, item: Item, is_pin: bool) -> Pin:
         self.keep(name, item)
-        pin = self._pins[name] = Pin(item, is_pin)
+        pin = self._pins[name] = (PortPin if item.type == PORT else Pin)(item, name, is_pin)
         return pin
 
     def getpin(self, name: str) -> Pin:
@@ -114,7 +183,7 @@ class component(Items):
         pin: Pin = self._pins[name]
         return pin
 
-    getitem = getpin
+    getitem = getparam = getpin
 
     def getpins(self) -> dict[str, Any]:
         """All values by name."""
@@ -157,7 +226,7 @@ class component(Items):
 
     def _check_alive(self) -> None:
         if self._record is None:
-            raise HalError("Invalid operation on closed HAL component")
+            raise NotPossible("Invalid operation on closed HAL component")
 
     def __getattr__(self, name: str) -> Any:
         return self[name]
@@ -201,45 +270,86 @@ def component_is_ready(name: str) -> bool:
     return comp is not None and comp.ready
 
 
+def _failed(action: Callable[[], None]) -> bool:
+    """What LinuxCNC's functions return: False where it is done; True where not, with the reason on standard error."""
+    try:
+        action()
+    except HalError as refusal:
+        print(f"HAL: ERROR: {refusal}", file=sys.stderr, flush=True)
+        return True
+    return False
+
+
 def new_sig(name: str, type: int) -> bool:
-    """Make a signal."""
+    """Make a signal; False where it is done, True where it exists already."""
+    if type not in TYPE_NAMES:
+        raise NotPossible("not a valid HAL signal type")
+    return _failed(lambda: _make_signal(name, type))
+
+
+def _make_signal(name: str, type: int) -> None:
     door().new_signal(name, type)
-    return True
 
 
 def connect(pin: str, signal: str) -> bool:
-    """Link a pin to a signal."""
-    door().link(pin, signal)
-    return True
+    """Link a pin to a signal; False where it is done, True where that is not possible."""
+    return _failed(lambda: door().link(pin, signal))
 
 
 def disconnect(pin: str) -> bool:
-    """Unlink a pin."""
-    door().unlink(pin)
-    return True
+    """Unlink a pin; False where it is done, True where there is none."""
+    return _failed(lambda: door().unlink(pin))
 
 
 def pin_has_writer(name: str) -> bool:
     """Whether an output drives the signal that the pin is linked to."""
-    signal = door().pin(name).signal
+    pin = door().segment.find_item(PIN, name)
+    if pin is None:
+        raise NotThere(f"Pin `{name}' does not exist")
+    signal = pin.signal
     return signal is not None and signal.writer() is not None
 
 
 def get_value(name: str) -> Any:
     """The value of a pin, parameter or signal."""
-    return door().value(name)
+    try:
+        return door().value(name)
+    except HalError as refusal:
+        raise NotPossible(str(refusal)) from None
 
 
-def set_p(name: str, value: str) -> bool:
-    """Set a pin or parameter, as ``halcmd setp`` does."""
-    door().set_item(name, str(value))
-    return True
+def get_p(name: str) -> Any:
+    """The value of a pin or parameter."""
+    found = door().find(name)
+    if found is None:
+        raise NotPossible(f"pin or parameter '{name}' not found")
+    return found[1].get()
 
 
-def set_s(name: str, value: str) -> bool:
-    """Set a signal, as ``halcmd sets`` does."""
-    door().set_signal(name, str(value))
-    return True
+def get_s(name: str) -> Any:
+    """The value of a signal."""
+    signal = door().segment.find_signal(name)
+    if signal is None:
+        raise NotPossible(f"signal '{name}' not found")
+    return signal.get()
+
+
+def set_p(name: str, value: Any) -> bool:
+    """Set a pin or parameter, as ``halcmd setp`` does; False where it is done."""
+    return _set(door().set_item, name, value)
+
+
+def set_s(name: str, value: Any) -> bool:
+    """Set a signal, as ``halcmd sets`` does; False where it is done."""
+    return _set(door().set_signal, name, value)
+
+
+def _set(setter: Callable[[str, str], None], name: str, value: Any) -> bool:
+    try:
+        setter(name, str(value))
+    except HalError as refusal:
+        raise NotPossible(str(refusal)) from None
+    return False
 
 
 def get_info_pins() -> list[dict[str, Any]]:

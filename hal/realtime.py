@@ -18,7 +18,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hal import _shm
-from hal._shm import BIT, IN, IO, OUT, REALTIME, RO, RW, S32, THREAD_COMP, Comp, Funct, Item
+from hal._shm import BIT, IN, IO, OUT, PORT, REALTIME, RO, RW, S32, THREAD_COMP, Comp, Funct, Item
 from hal._threads import NativeThread, PythonCall, Scheduler, lock_memory
 from hal.components import find as find_component
 from hal.core import LOCK_CONFIG, LOCK_LOAD, Hal
@@ -46,7 +46,8 @@ class Component:
     def pin(self, name: str, type_: int, direction: int, value: Any = 0) -> Item:
         """A pin; its ``address`` is the ``hal_pin`` of native code."""
         pin = self.host.hal.add_pin(self.record, name, type_, direction)
-        pin.set(value)
+        if type_ != PORT:
+            pin.set(value)
         return pin
 
     def param(self, name: str, type_: int, direction: int, value: Any = 0) -> Item:
@@ -306,9 +307,10 @@ class Host:
             record = segment.new_thread(name, comp.record.id, period_ns, uses_fp)
             time = comp.pin(f"{name}.time", S32, OUT)
             tmax = comp.param(f"{name}.tmax", S32, RW)
+            beat = comp.pin(f"{name}.threadbeat", S32, OUT)
         comp.ready()
         scheduler, record.priority = self._scheduler()
-        native = NativeThread(segment, record, time.address, tmax.address)
+        native = NativeThread(segment, record, time.address, tmax.address, beat.address)
         scheduler.add(native)
         made = self._threads[name] = HostThread(native, scheduler, comp, owner)
         return made

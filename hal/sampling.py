@@ -67,7 +67,7 @@ def copy_samples(stream: Stream, out: TextIO, count: int, tag: bool) -> None:
         if expected is not None and number != expected:
             out.write("overrun\n")
         expected = number + 1
-        out.write((f"{number} " if tag else "") + format_sample(types, values) + "\n")
+        out.write((f"{number - 1} " if tag else "") + format_sample(types, values) + "\n")
         done += 1
     out.flush()
 

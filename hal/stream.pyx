@@ -4,6 +4,8 @@ One writer, one reader, no lock: each only moves its own counter. ``sampler`` an
 the realtime end, ``halsampler`` and ``halstreamer`` (``hal.sampling``) at the other; Python programs use `Stream`.
 """
 
+import errno
+
 from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_EXCL, O_RDWR
 from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, munmap
 from posix.unistd cimport close, ftruncate
@@ -108,6 +110,7 @@ cdef class Stream:
         cdef int fd
         shm_unlink(self.path)  # left by a process that was killed
         fd = shm_open(self.path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0o600)
+        depth = max(depth - 1, <size_t>1)  # as in LinuxCNC, where one place of the ring stays free
         self.size = sizeof(hal_fifo) + depth * (len(types) + 1) * sizeof(hal_cell)
         if fd < 0 or ftruncate(fd, self.size) != 0:
             raise HalError(f"cannot make the stream {self.path.decode()}", -12)
@@ -192,13 +195,13 @@ cdef class Stream:
         return self.fifo.underruns
 
     def read(self):
-        """The oldest sample as a tuple, and its number in ``sampleno``; None where there is none."""
+        """The oldest sample as a tuple, and its number, from 1, in ``sampleno``; None where there is none."""
         self._check()
         cdef hal_cell* cell = fifo_next(self.fifo)
         if cell == NULL:
             self.fifo.underruns += 1
             return None
-        self.sampleno = cell.k
+        self.sampleno = cell.k + 1
         cdef list values = []
         cdef hal_cell* column
         cdef int i
@@ -211,15 +214,15 @@ cdef class Stream:
         fifo_release(self.fifo)
         return tuple(values)
 
-    def write(self, values) -> bool:
-        """Append a sample; False where the queue is full."""
+    def write(self, values) -> None:
+        """Append a sample; OSError where the queue is full."""
         self._check()
         if len(values) != self.fifo.columns:
-            raise HalError(f"a sample of {len(values)} columns; {self.fifo.columns} would be right")
+            raise ValueError(f"a sample of {len(values)} columns; {self.fifo.columns} would be right")
         cdef hal_cell* cell = fifo_room(self.fifo)
         cdef int i
         if cell == NULL:
-            return False
+            raise OSError(errno.ENOSPC, f"the stream is full: {self.fifo.depth} samples wait to be read")
         for i in range(self.fifo.columns):
             type_ = self.fifo.types[i]
             if type_ == FLOAT:
@@ -231,4 +234,3 @@ cdef class Stream:
             else:
                 cell[i].k = values[i]
         fifo_publish(self.fifo)
-        return True

@@ -22,6 +22,7 @@ RANGES = {
     U32: (0, 2**32 - 1),
     S64: (-(2**63), 2**63 - 1),
     U64: (0, 2**64 - 1),
+    PORT: (0, 2**20),  # bytes of its buffer
 }
 _BITS = {"1": True, "true": True, "0": False, "false": False}
 _SHOWN = {
@@ -63,8 +64,8 @@ def _parse_integer(type_: int, text: str) -> int:
         raise ValueError(text)
     octal = digits[0] == "0" and digits.isdigit()
     value = int(text, 8 if octal else 0)
-    low, high = RANGES.get(type_, RANGES[S32])
-    if low == 0 and -high - 1 <= value < 0:
+    low, high = RANGES[type_]
+    if type_ in (U32, U64) and -high - 1 <= value < 0:
         value += high + 1
     if not low <= value <= high:
         raise ValueError(text)
@@ -77,7 +78,7 @@ def _allowed(type_: int) -> str:
         return "1, TRUE, 0 or FALSE would be right"
     if type_ == FLOAT:
         return "a number would be right"
-    low, high = RANGES.get(type_, RANGES[S32])
+    low, high = RANGES[type_]
     return f"a whole number from {low} to {high} would be right"
 
 

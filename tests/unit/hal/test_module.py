@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 import hal
+from hal.core import Hal
+from hal.module import door
 
 
 @pytest.fixture
@@ -29,7 +33,7 @@ def test_a_pin_knows_itself(comp: hal.component) -> None:
     pin = comp.newpin("a-b", hal.HAL_BIT, hal.HAL_IO)
     pin.set(True)
     assert (pin.get(), pin.value, pin.get_name(), pin.get_type(), pin.get_dir(), pin.is_pin()) == (
-        True, True, "c.a-b", hal.HAL_BIT, hal.HAL_IO, True,
+        True, True, "a-b", hal.HAL_BIT, hal.HAL_IO, True,
     )  # fmt: skip
     assert comp.getpin("a-b") is pin
     assert comp.newparam("p", hal.HAL_U32, hal.HAL_RW).is_pin() is False
@@ -39,7 +43,7 @@ def test_a_prefix_names_the_pins(own_namespace: str) -> None:
     with hal.component("c", "other") as comp:
         comp.newpin("x", hal.HAL_BIT, hal.HAL_IN)
         comp.setprefix("third")
-        assert comp.newpin("y", hal.HAL_BIT, hal.HAL_IN).get_name() == "third.y"
+        assert comp.newpin("y", hal.HAL_BIT, hal.HAL_IN).get_name() == "y"
         assert [info["NAME"] for info in hal.get_info_pins()] == ["other.x", "third.y"]
 
 
@@ -73,6 +77,51 @@ def test_signals_are_made_connected_and_read(comp: hal.component) -> None:
     hal.disconnect("c.in")
     hal.set_p("c.in", "3")
     assert comp["in"] == 3.0
+    hal.set_p("c.in", 4.5)
+    assert hal.get_p("c.in") == 4.5
+    hal.disconnect("c.out")
+    hal.set_s("s", 2)
+    assert hal.get_s("s") == 2.0
+
+
+def test_what_is_done_is_false_and_what_failed_is_true_with_the_reason(
+    comp: hal.component, capsys: pytest.CaptureFixture[str]
+) -> None:
+    comp.newpin("out", hal.HAL_FLOAT, hal.HAL_OUT)
+    done = [hal.new_sig("s", hal.HAL_FLOAT), hal.new_sig("t", hal.HAL_FLOAT), hal.connect("c.out", "s")]
+    assert not any(done)
+    assert not hal.disconnect("c.out")
+    assert capsys.readouterr().err == ""
+    assert hal.connect("c.nothing", "s")
+    assert hal.new_sig("s", hal.HAL_FLOAT)
+    assert capsys.readouterr().err == "HAL: ERROR: pin 'c.nothing' not found\nHAL: ERROR: duplicate signal 's'\n"
+
+
+def test_refusals_are_the_exceptions_that_linuxcnc_raises(comp: hal.component) -> None:
+    comp.newpin("out", hal.HAL_FLOAT, hal.HAL_OUT)
+    for wrong in (
+        lambda: hal.set_p("c.out", "1"),
+        lambda: hal.set_p("nothing", "1"),
+        lambda: hal.get_value("nothing"),
+        lambda: hal.get_s("nothing"),
+        lambda: hal.get_p("nothing"),
+        lambda: hal.new_sig("s", 99),
+    ):
+        with pytest.raises(RuntimeError):
+            wrong()
+    with pytest.raises(NameError):
+        hal.pin_has_writer("nothing")
+    with pytest.raises(ValueError, match="Duplicate pin name 'out'"):
+        comp.newpin("out", hal.HAL_FLOAT, hal.HAL_OUT)
+
+
+def test_types_and_directions_have_names(comp: hal.component) -> None:
+    assert (hal.Type.BOOL, hal.Type.REAL, hal.Type.SINT, hal.Type.UINT) == (
+        hal.HAL_BIT, hal.HAL_FLOAT, hal.HAL_S32, hal.HAL_U32,
+    )  # fmt: skip
+    pin = comp.newpin("x", hal.Type.SINT, hal.Dir.IN)
+    assert (pin.get_type(), pin.get_dir()) == (hal.HAL_S32, hal.HAL_IN)
+    assert hal.Dir.RW == hal.HAL_RW
 
 
 def test_after_exit_the_component_is_closed(own_namespace: str) -> None:
@@ -96,19 +145,96 @@ def test_waiting_for_a_pin_ends_with_its_value_or_the_time(comp: hal.component) 
     pin.set(4)
     assert pin.wait(4, timeout=0.0)
     assert not pin.wait(5, timeout=0.0)
+    assert not pin.wait_change(timeout=0.0)
+
+
+def test_waiting_ends_when_another_process_sets_the_pin(comp: hal.component) -> None:
+    pin = comp.newpin("x", hal.HAL_S32, hal.HAL_IN)
+    child = os.fork()
+    if child == 0:
+        hal.set_p("c.x", "7")
+        os._exit(0)
+    try:
+        assert pin.wait(7, timeout=30.0)
+    finally:
+        os.waitpid(child, 0)
+
+
+def test_waiting_looks_again_only_when_something_has_changed(comp: hal.component) -> None:
+    pin, other = (comp.newpin(name, hal.HAL_S32, hal.HAL_IN) for name in ("x", "y"))
+    segment = door().segment
+    seen = segment.changes()
+    assert segment.changes() == seen
+    other.set(1)
+    assert segment.changes() == seen + 1
+    pin.set(1)
+    assert segment.changes() == seen + 2
+
+
+def test_a_port_carries_bytes_in_order_once_it_has_a_size(comp: hal.component) -> None:
+    writer = comp.newpin("out", hal.HAL_PORT, hal.HAL_OUT)
+    reader = comp.newpin("in", hal.HAL_PORT, hal.HAL_IN)
+    hal.new_sig("p", hal.HAL_PORT)
+    hal.connect("c.out", "p")
+    hal.connect("c.in", "p")
+    assert (writer.size(), writer.writable(), writer.write(b"a"), reader.read(1)) == (0, 0, False, False)
+    hal.set_s("p", 16)
+    assert (writer.size(), writer.writable(), reader.readable()) == (16, 16, 0)
+    for _ in range(5):  # round the ring
+        assert writer.write("hello world")
+        assert not writer.write(b"too much")
+        assert (reader.readable(), reader.peek(5), reader.peek(5)) == (11, b"hello", b"hello")
+        assert reader.peek_commit(6)
+        assert (reader.read(5), reader.read(1), reader.peek_commit(1)) == (b"world", False, False)
+    writer.write(b"rest")
+    reader.clear()
+    assert (reader.readable(), writer.writable()) == (0, 16)
+    with pytest.raises(hal.error, match="has no value"):
+        writer.set(1)
+
+
+def test_a_port_has_one_reader_and_one_size(comp: hal.component, capsys: pytest.CaptureFixture[str]) -> None:
+    comp.newpin("in", hal.HAL_PORT, hal.HAL_IN)
+    comp.newpin("in2", hal.HAL_PORT, hal.HAL_IN)
+    with pytest.raises(hal.error, match="either HAL_IN or HAL_OUT"):
+        comp.newpin("io", hal.HAL_PORT, hal.HAL_IO)
+    hal.new_sig("p", hal.HAL_PORT)
+    hal.connect("c.in", "p")
+    assert hal.connect("c.in2", "p")
+    assert "one reader only" in capsys.readouterr().err
+    hal.set_s("p", 100)
+    with pytest.raises(RuntimeError, match="already allocated with 100 bytes"):
+        hal.set_s("p", 50)
+    hal.disconnect("c.in")
+    assert comp["in"] == 0
+
+
+def test_the_room_of_deleted_ports_is_used_again(own_namespace: str) -> None:
+    made = Hal()
+    for size in (600_000, 900_000, 1_000_000, 16):
+        made.new_signal("p", hal.HAL_PORT)
+        made.set_signal("p", str(size))
+        with pytest.raises(hal.error, match="no room for a port"):
+            made.new_signal("q", hal.HAL_PORT) and made.set_signal("q", str(2**20))
+        made.delete_signal("q")
+        made.delete_signal("p")
+    made.close()
 
 
 def test_a_stream_is_a_lossless_queue(comp: hal.component) -> None:
-    writer = hal.stream(comp, 77, 3, "bfsu")
+    writer = hal.stream(comp, 77, 4, "bfsu")
     reader = hal.stream(comp, 77, "bfsu")
     sent = [(True, 0.5 * i, -i, i) for i in range(4)]
-    assert [writer.write(sample) for sample in sent] == [True, True, True, False]
+    for sample in sent[:3]:
+        writer.write(sample)
+    with pytest.raises(OSError, match="full"):
+        writer.write(sent[3])
     assert (reader.depth, reader.maxdepth, writer.writable, writer.num_overruns) == (3, 3, False, 1)
     assert [reader.read() for _ in range(4)] == [*sent[:3], None]
-    assert (reader.sampleno, reader.readable, reader.num_underruns) == (2, False, 1)
+    assert (reader.sampleno, reader.readable, reader.num_underruns) == (3, False, 1)
     writer.write(sent[0])
     assert reader.read() == sent[0]
-    assert reader.sampleno == 4  # one was lost
+    assert reader.sampleno == 5  # one was lost
     with pytest.raises(hal.error, match="has columns 'bfsu'"):
         hal.stream(comp, 77, "f")
     reader.close()

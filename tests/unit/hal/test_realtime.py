@@ -200,3 +200,20 @@ def test_what_a_module_provides_goes_with_it(host: Host, tmp_path: Path) -> None
     host.unload("giver")
     with pytest.raises(HalError, match="no thing is loaded"):
         host.require("thing")
+
+
+def test_a_waiter_is_woken_by_what_a_native_thread_writes(host: Host) -> None:
+    from hal import module
+
+    host.load("threads", ["name1=t", "period1=1000000"])
+    host.load("updown", [])
+    with module.component("watcher") as watcher:
+        count = watcher.newpin("count", module.HAL_S32, module.HAL_IN)
+        module.new_sig("counted", module.HAL_S32)
+        module.connect("updown.0.count", "counted")
+        module.connect("watcher.count", "counted")
+        host.add_function("updown.0", "t")
+        host.hal.start_threads()
+        host.hal.set_item("updown.0.countup", "1")
+        assert count.wait(1, timeout=30.0)
+        assert host.hal.value("t.threadbeat") > 0
