@@ -4,6 +4,10 @@ from libc.math cimport M_PI, atan2, fabs, fmod, sqrt
 
 from emcmot.tp.tp cimport TpSegment
 
+from emcmot.layout import same_size
+
+same_size(__name__, "TpSegment", sizeof(TpSegment))
+
 cdef double FULL = 2.0 * M_PI
 
 

@@ -147,8 +147,11 @@ from emcmot.parameters cimport set_parameters
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
 
+from emcmot.layout import same_size
 from nml.emc.emcmot import EMCMOT_COMMAND as CommandMessage
 from nml.emc.emcmot import MotCommand
+
+same_size(__name__, "Motion", sizeof(Motion))
 
 cdef enum Requirement:
     ENABLED = 1          # motion is enabled

@@ -44,6 +44,10 @@ from emcmot.tp.tp cimport (
 )
 from emcmot.world cimport CHASE_LOST, command_world, update_world_feedback, world_from_joints
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
 cdef int TYPE_ARC = 3

@@ -11,7 +11,10 @@ from emcmot.status cimport fill_status
 from emcmot.tp.tp cimport tp_create, tp_free, tp_get_status, tp_set_cycle_time
 from emcmot.world cimport refresh_planner_limits
 
+from emcmot.layout import same_size
 from nml.errors import HalError
+
+same_size(__name__, "Motion", sizeof(Motion))
 
 QUEUE_SIZE = 2000
 NO_LIMIT = 1e99

@@ -12,6 +12,10 @@ from emcmot._messages cimport MAX_AXES, MotionState_FREE
 from emcmot.free_planner cimport free_planner_rest_at, free_planner_step
 from emcmot.state cimport Axis, Motion
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef double ACTIVE = 1e-6  # lu or deg: a smaller offset is none
 
 

@@ -15,6 +15,9 @@ from emcmot.tp.tp cimport *
 from rs274ngc.moves cimport MoveCanon
 
 from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPED, Tool
+from emcmot.layout import same_size
+
+same_size(__name__, "TpSegment", sizeof(TpSegment))
 
 cdef enum:
     CHUNK = 65536                # periods in one piece of the trace

@@ -52,6 +52,10 @@ from emcmot.state cimport COMP_POINTS, Compensation, Joint, Motion, Spindle
 from emcmot.tp.tp cimport TP_OK, tp_pause, tp_resume, tp_set_reverse, tp_step_once
 from emcmot.world cimport kinematics_usable
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef double SPINDLE_STEP = 100.0  # rpm, of SPINDLE_INCREASE and SPINDLE_DECREASE
 
 

@@ -11,6 +11,10 @@ from libc.stdio cimport snprintf
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Joint, Motion
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef double HOME_DELAY = 0.100       # s of standstill before a homing move
 cdef double SEARCH_RANGE = 1.25      # a search goes this many times the joint's travel at most
 cdef double MAX_TRAVEL = 1e6         # lu or deg, for joints without limits

@@ -15,6 +15,10 @@ from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
 from emcmot.world cimport AXIS_NAMES
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef double FAR = 1e6           # lu or deg: how far a jog without limits goes
 cdef double AT_LIMIT = 1e-9     # lu or deg: closer than this to a limit is on it
 

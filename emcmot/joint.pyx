@@ -10,6 +10,10 @@ from emcmot.free_planner cimport free_planner_rest_at, free_planner_step
 from emcmot.homing cimport homing_ignores_limits, take_index
 from emcmot.state cimport Compensation, Joint, Motion
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 # The share of a joint's own limits that backlash and screw compensation may add to the motor's speed and acceleration.
 cdef double CORRECTION_SHARE = 0.5
 cdef double SOFT_LIMIT_TOLERANCE = 1e-7  # lu or deg: what rounding may add to an end point on the limit

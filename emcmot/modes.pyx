@@ -14,13 +14,18 @@ from emcmot.free_planner cimport free_planner_rest_at
 from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
 from emcmot.jog cimport stop_jogs
 from emcmot.joint cimport set_joint_position
-from emcmot.kins.kinematics cimport select_way
+from emcmot.kins.kinematics cimport Kinematics, select_way
 from emcmot.probe cimport PROBE_OFF
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport stop_spindles
 from emcmot.state cimport Axis, Joint, Motion
 from emcmot.tp.tp cimport TP_OK, tp_abort, tp_set_pos
 from emcmot.world cimport align_joints, refresh_planner_limits, update_world_feedback, world_from_joints
+
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+same_size(__name__, "Kinematics", sizeof(Kinematics))
 
 
 cdef int joints_have_followed(Motion* m) noexcept nogil:

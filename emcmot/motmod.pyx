@@ -20,9 +20,12 @@ from hal.cell cimport hal_at, hal_cell, hal_pin
 from nml._shm cimport queue_pop, queue_push, slot_write
 
 from emcmot.core import LIMITS
+from emcmot.layout import same_size
 from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RO, HAL_S32, HAL_U32
 from nml.channel import Channel
 from nml.errors import HalError
+
+same_size(__name__, "Motion", sizeof(Motion))
 
 cdef int COMMANDS_PER_PERIOD = 256
 cdef int64_t COMMAND_SHARE = 4     # the handler stops taking commands after this part of a period

@@ -23,6 +23,11 @@ from emcmot.state cimport LINES, Motion
 from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TP_TAP, TpSegment, tp_add
 from emcmot.world cimport check_box, check_end_point
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+same_size(__name__, "TpSegment", sizeof(TpSegment))
+
 cdef int SETTLING = 3  # periods in which an analog output, and a HAL file behind it, may switch the kinematics
 
 cdef int TYPE_TRAVERSE = 1

@@ -45,8 +45,11 @@ from emcmot.state cimport Axis, Joint, Motion, Spindle
 from emcmot.tp.tp cimport tp_set_vel_limit
 from emcmot.world cimport refresh_planner_limits
 
+from emcmot.layout import same_size
 from nml.emc.emcmot import EMCMOT_COMMAND as CommandMessage
 from nml.emc.emcmot import MotCommand
+
+same_size(__name__, "Motion", sizeof(Motion))
 
 cdef enum Owner:
     OF_JOINT

@@ -10,6 +10,10 @@ from emcmot.state cimport Axis, Joint, Motion, Spindle
 
 from typing import NamedTuple
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 AXES = "xyzabcuvw"
 
 

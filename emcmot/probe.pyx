@@ -12,6 +12,10 @@ from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
 from emcmot.tp.tp cimport tp_abort
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 cdef int MOTION_TYPE_PROBING = 5
 
 

@@ -10,6 +10,10 @@ from emcmot._messages cimport Enables_SS
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport ORIENT_COMPLETE, ORIENT_FAULTED, ORIENT_IN_PROGRESS, ORIENT_NONE, Motion, Spindle
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 
 cdef void stop_spindle(Spindle* s) noexcept nogil:
     s.state = 0

@@ -27,6 +27,10 @@ from emcmot._messages cimport (
 )
 from emcmot.state cimport Axis, Joint, Motion, Spindle
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 
 cdef void fill_joint(EMCMOT_JOINT_STATUS* s, const Joint* joint) noexcept nogil:
     s.flag = (

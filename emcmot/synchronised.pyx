@@ -6,6 +6,10 @@ from emcmot.spindle cimport spindles_at_speed
 from emcmot.state cimport Motion, Spindle
 from emcmot.tp.tp cimport tp_index_seen, tp_set_at_speed, tp_set_feed_inhibit, tp_spindle, tp_unlocked
 
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+
 
 cdef void watch_index(Motion* m) noexcept nogil:
     """Where the planner wants an index pulse, arm the encoder's index-enable, which resets itself at the pulse."""

@@ -6,10 +6,15 @@ from libc.stdio cimport snprintf
 from emcmot._messages cimport MAX_AXES, MAX_JOINTS
 from emcmot.free_planner cimport fastest_stoppable
 from emcmot.joint cimport command_joint
-from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY
+from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY, Kinematics
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
 from emcmot.tp.tp cimport tp_set_axis_limits
+
+from emcmot.layout import same_size
+
+same_size(__name__, "Motion", sizeof(Motion))
+same_size(__name__, "Kinematics", sizeof(Kinematics))
 
 cdef const char* AXIS_NAMES = b"XYZABCUVW"
 cdef double LIMIT_TOLERANCE = 1e-9   # lu or deg, relative to 1 + |limit|: rounding of unit conversions

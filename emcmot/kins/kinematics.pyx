@@ -9,7 +9,10 @@ from libc.stdint cimport uintptr_t
 
 from typing import NamedTuple
 
+from emcmot.layout import same_size
 from nml.errors import HalError
+
+same_size(__name__, "Kinematics", sizeof(Kinematics))
 
 AXIS_LETTERS = "xyzabcuvw"
 IDENTITY_FIRST = "identityfirst"

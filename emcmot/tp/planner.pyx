@@ -1,11 +1,15 @@
 """Python face of the trajectory planner: what tests, benchmarks and the forecast feed and step."""
 
 import numpy as np
+from emcmot.layout import same_size
 
 from libc.string cimport memset
 from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 
 from emcmot.tp.tp cimport *
+
+same_size(__name__, "TpSegment", sizeof(TpSegment))
+same_size(__name__, "TpStatus", sizeof(TpStatus))
 
 cdef int AXIS_COUNT = TP_AXES
 

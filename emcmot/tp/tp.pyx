@@ -16,6 +16,11 @@ from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, SPAN_BLEND, TAP_OUT
 from emcmot.tp.reverse cimport turn_back, turn_forward
 from emcmot.tp.tap cimport at_rest
 
+from emcmot.layout import same_size
+
+same_size(__name__, "TpSegment", sizeof(TpSegment))
+same_size(__name__, "TpStatus", sizeof(TpStatus))
+
 cdef enum:
     SPAN_RING = 8192
     SEGMENT_RING = 4096
