@@ -10,7 +10,8 @@ import { registerPanel } from "../core/panels.js";
 /** @typedef {import("../core/app.js").App} App */
 
 const CHECK_PAUSE_MS = 250;
-const KEYS = ["G0", "G1", "X", "Y", "Z", "F", "S", "M", "7", "8", "9", "-", "4", "5", "6", ".", "1", "2", "3", "0"];
+const ERASE = "⌫";
+const KEYS = ["G", "M", "X", "7", "8", "9", ERASE, "F", "S", "Y", "4", "5", "6", "-", "I", "J", "Z", "1", "2", "3", ".", "G0", "G1", "T", "0"];
 
 registerPanel({
   id: "mdi",
@@ -73,9 +74,8 @@ function keyPad(input, changed) {
   return h(
     "div",
     { class: "keypad" },
-    KEYS.map((key) => h("button", { type: "button", onclick: () => insert(key), ...keep }, key)),
+    KEYS.map((key) => h("button", { type: "button", onclick: () => (key === ERASE ? erase() : insert(key)), "aria-label": key === ERASE ? _("Delete") : null, ...keep }, key)),
     h("button", { type: "button", class: "wide", onclick: () => insert(" "), ...keep }, _("Space")),
-    h("button", { type: "button", class: "wide", onclick: erase, "aria-label": _("Delete"), ...keep }, "⌫"),
   );
 }
 
@@ -99,9 +99,10 @@ function lineCheck(app, input, verdict) {
       show(outside.length ? "warn" : "ok", outside.length ? leaving(outside) : _("Checked, {n} moves", { n: found.moves }));
       return true;
     } catch (error) {
-      const { details, message } = /** @type {any} */ (error);
-      show("danger", details?.column ? _("Column {column}: {text}", { column: details.column, text: message }) : message);
-      return false;
+      const { code, details, message } = /** @type {any} */ (error);
+      const wrong = code === "gcode";
+      show(wrong ? "danger" : "warn", details?.column ? _("Column {column}: {text}", { column: details.column, text: message }) : message);
+      return !wrong; // what cannot be checked may be sent; the machine checks it too
     }
   };
   return {

@@ -1,0 +1,143 @@
+"""One browser window on the web display, with the words of an operator: press, hold, open a page, read the position."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from tests.support.machine import PATIENCE, ROOT, wait_until
+
+ARTEFACTS = ROOT / "artefacts" / "browser"
+TABLET = (1280, 800)
+PHONE = (390, 844)
+TIMEOUT_MS = PATIENCE * 1000
+NETWORK_ERROR = re.compile(r"ERR_(INTERNET_DISCONNECTED|CONNECTION|NETWORK)|WebSocket connection")
+GRAPHICS = "GL Driver Message"
+
+
+class Screen:
+    """A page of its own in a browser context of its own, so it shares no memory with other screens."""
+
+    def __init__(
+        self,
+        browser: Any,
+        port: int,
+        *,
+        size: tuple[int, int] = TABLET,
+        lang: str = "en",
+        token: str | None = None,
+        touch: bool = False,
+        theme: str = "dark",
+        panel: str = "manual",
+        wait: bool = True,
+        preferences: dict[str, str] | None = None,
+    ) -> None:
+        self.problems: list[str] = []
+        width, height = size
+        self.context = browser.new_context(viewport={"width": width, "height": height}, has_touch=touch, locale=lang)
+        self.context.set_default_timeout(TIMEOUT_MS)
+        self.page = self.context.new_page()
+        self.page.on("pageerror", lambda error: self.problems.append(f"page: {error}"))
+        self.page.on("console", self._console)
+        remembered = {"language": f'"{lang}"', "theme": f'"{theme}"', "panel": f'"{panel}"', **(preferences or {})}
+        for name, value in remembered.items():
+            self.context.add_init_script(f"localStorage['pyemc.{name}'] ??= {value!r}")
+        self._cut = False
+        self.page.route_web_socket("**/ws", self._wire)
+        self.page.goto(f"http://127.0.0.1:{port}/" + (f"#token={token}" if token else ""))
+        if wait:
+            self.page.wait_for_selector("#rail [role=tab]")
+
+    def _console(self, message: Any) -> None:
+        ignored = NETWORK_ERROR.search(message.text) or GRAPHICS in message.text
+        if message.type in ("error", "warning") and not ignored:
+            self.problems.append(f"console: {message.text}")
+
+    # --- the network -----------------------------------------------------------------------------------------------
+
+    def _wire(self, socket: Any) -> None:
+        server = socket.connect_to_server()
+        socket.on_message(lambda data: None if self._cut else server.send(data))
+        server.on_message(lambda data: None if self._cut else socket.send(data))
+
+    def cut_network(self) -> None:
+        """From now on nothing passes in either direction, and nobody says goodbye."""
+        self._cut = True
+
+    def mend_network(self) -> None:
+        self._cut = False
+
+    # --- an operator's hands ---------------------------------------------------------------------------------------
+
+    def go(self, panel: str) -> None:
+        """Open a page of the rail."""
+        self.page.click(f"#tab-{panel}")
+        self.page.wait_for_selector(f"#panel-{panel}:visible")
+
+    def press(self, name: str, scope: str = "body") -> None:
+        """Click the visible button with this name."""
+        self.page.locator(scope).get_by_role("button", name=name, exact=True).locator("visible=true").first.click()
+
+    def power_up(self) -> None:
+        """Reset E-stop, switch on, home all."""
+        self.page.click("#estop:has-text('Reset E-stop'):enabled")
+        self.page.click("#power:enabled[aria-pressed=false]")
+        self.page.wait_for_selector("#power[aria-pressed=true]")
+        self.go("manual")
+        self.page.click("#home-all:enabled")
+        self.wait_state("Ready")
+
+    def hold(self, selector: str) -> None:
+        """Put the finger on a button and leave it there."""
+        box = self.page.locator(selector).bounding_box()
+        assert box is not None, selector
+        self.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        self.page.mouse.down()
+
+    def let_go(self) -> None:
+        self.page.mouse.up()
+
+    def type_expression(self, text: str) -> None:
+        """Type into the field of an open dialog that has the focus, over what stands there."""
+        self.page.wait_for_selector("dialog[open] input")
+        self.page.keyboard.press("Control+A")
+        self.page.keyboard.type(text)
+
+    def open_program(self, name: str) -> None:
+        self.go("program")
+        self.page.click("#program-open:enabled")
+        self.page.click(f".file button:has-text('{name}'):enabled")
+        self.page.wait_for_selector(f"#run-state:has-text('{name}')")
+
+    def send_mdi(self, line: str) -> None:
+        self.go("mdi")
+        self.page.fill("#mdi-line", line)
+        self.page.click("#mdi-send:enabled")
+
+    # --- an operator's eyes ----------------------------------------------------------------------------------------
+
+    def state(self) -> str:
+        return str(self.page.inner_text("#state-line"))
+
+    def wait_state(self, text: str) -> None:
+        self.page.wait_for_selector(f"#state-line:text-is('{text}')")
+
+    def position(self, axis: str) -> float:
+        """Work coordinate of an axis as the readout shows it."""
+        return float(self.page.inner_text(f".readout .work[data-axis={axis}]"))
+
+    def wait_position(self, axis: str, value: float) -> None:
+        wait_until(lambda: abs(self.position(axis) - value) < 0.0005, f"{axis} at {value}, is {self.position(axis)}")
+
+    def wait_text(self, text: str) -> None:
+        """Wait until a visible element bears this text."""
+        self.page.locator(f"text={text}").locator("visible=true").first.wait_for()
+
+    def picture(self, name: str, **options: Any) -> None:
+        """A screenshot among the artefacts."""
+        ARTEFACTS.mkdir(parents=True, exist_ok=True)
+        if not self.page.is_closed():
+            self.page.screenshot(path=ARTEFACTS / name, **options)
+
+    def close(self) -> None:
+        self.context.close()
