@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 from aiohttp import web
 
-from gui.web import access, frames, texts
+from gui.web import access, frames, gateway, texts
 from gui.web.access import Role
 from gui.web.calls import CallError
 from gui.web.client import Client
@@ -42,6 +42,7 @@ def application(server: Server) -> web.Application:
             web.get("/health", _health),
             web.post("/upload", _upload),
             web.get("/ws", _websocket),
+            web.get("/nml", _gateway),
         ]
     )
     return app
@@ -203,3 +204,14 @@ async def _websocket(request: web.Request) -> web.StreamResponse:
     with contextlib.suppress(ConnectionError):
         await client.converse()
     return socket
+
+
+async def _gateway(request: web.Request) -> web.StreamResponse:
+    """NML messages by name, for programs; a page that is not ours is not among them."""
+    server = request.app[SERVER]
+    origin = request.headers.get("Origin")
+    if origin is not None and not server.access.origin_allowed(origin, request.headers.get("Host")):
+        return refusal(403, "origin", "pages of other servers may not connect here")
+    if not server.access.needs_token:
+        return refusal(403, "token", "the gateway needs tokens; [WEB]TOKEN_FILE names their file")
+    return await gateway.serve(request, server.machine, server.access.role)
