@@ -18,6 +18,7 @@ class Panel:
     def __init__(self, mdi_commands: list[str], axes: list[int]) -> None:
         self.status = linuxcnc.stat()
         self.command = linuxcnc.command()
+        self.command.origin = "halui"
         self.joint = 0  # selected
         self.axis = 0  # selected; X until a button chooses, also where there is no X, as LinuxCNC's
         self.axis_shown = axes[0] if axes else 0  # by the lamps

@@ -202,6 +202,7 @@ class Session:
             return
         ours = self.ini("EMC", "VERSION") if self._status.ini_filename else None
         ours = ours or VERSION
+        self.command.origin = f"linuxcncrsh: {client}"
         self.client, self.version, self.linked = client, (version or [VERSION])[0], True
         if self.version > ours:
             self.warn(f"Requested version '{self.version}' is newer than '{ours}' from [EMC]VERSION")

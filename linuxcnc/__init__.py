@@ -9,8 +9,11 @@ from linuxcnc._connection import error
 from linuxcnc._constants import *  # noqa: F403  every constant is public here
 from linuxcnc._error import error_channel
 from linuxcnc._ini import ini
+from linuxcnc._orders import order, order_channel
 from linuxcnc._positionlogger import positionlogger
 from linuxcnc._stat import stat
 from linuxcnc._stat import tool_result as tool
 
-__all__ = ["command", "error", "error_channel", "ini", "positionlogger", "stat", "tool"]
+__all__ = [
+    "command", "error", "error_channel", "ini", "order", "order_channel", "positionlogger", "stat", "tool",
+]

@@ -12,6 +12,7 @@ import nml.emc as emc
 from linuxcnc import _constants as const
 from linuxcnc._connection import error, open_channel
 from nml import clock
+from nml.emc import orders
 from nml.errors import NmlError
 from nml.message import Command
 
@@ -62,9 +63,13 @@ class command:
 
     serial = 0
     """Serial number of the command given last."""
+    origin: str
+    """Who gives the commands, as other clients see it; this program and its process number unless set otherwise."""
 
     def __init__(self) -> None:
+        self.origin = orders.program_name()
         self._commands = open_channel("emcCommand")
+        self._notes = None if self._commands.remote else open_channel(orders.NOTE_BUFFER)
         self._status = open_channel("emcStatus")
         self._echo = 0
         self._result = const.RCS_DONE
@@ -74,7 +79,10 @@ class command:
     def _send(self, message: type[Command], **fields: Any) -> None:
         """Write a message and wait until task has taken it."""
         try:
-            self.serial = self._commands.write(message(**fields))
+            order = message(**fields)
+            self.serial = self._commands.write(order)
+            if self._notes is not None:
+                self._notes.write(orders.note(order, self.serial, self.origin))
             received = self._wait_for(received=True, timeout=RECEIVE_TIMEOUT)
         except NmlError as reason:
             raise error(f"{message.__name__}: {reason}") from reason

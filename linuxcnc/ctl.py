@@ -10,11 +10,13 @@ import argparse
 import json
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import linuxcnc
+from linuxcnc.completion import bash_completion
 from linuxcnc.program import AXES, Operator, ProgramError, run_loaded
 from nml import clock, namespace
 
@@ -212,6 +214,19 @@ def _errors(console: Console, options: argparse.Namespace) -> None:
         print(f"{kind}: {text}", flush=True)
 
 
+def _watch(console: Console, options: argparse.Namespace) -> None:
+    """What the clients order and what the machine tells, each with the number of the command."""
+    notes = linuxcnc.order_channel()
+    while True:
+        while (order := notes.poll()) is not None:
+            at = time.strftime("%H:%M:%S", time.localtime(order.time))
+            print(f"{at} {order.serial:>6} {order.origin}: {order.text}", flush=True)
+        while (message := console.errors.poll()) is not None:
+            at = time.strftime("%H:%M:%S")
+            print(f"{at} {'':>6} {KINDS.get(message[0], 'text')}: {message[1]}", flush=True)
+        notes.wait(LOOK)
+
+
 def _messages(console: Console, follow: bool) -> Iterator[tuple[str, str]]:
     while True:
         while (message := console.errors.poll()) is not None:
@@ -257,16 +272,18 @@ def _parser() -> argparse.ArgumentParser:
     order("tools", _tools, "the tool table")
     errors = order("errors", _errors, "operator messages that come in")
     errors.add_argument("--follow", action="store_true", help="wait for more")
+    order("watch", _watch, "what all clients order, with who does, and the operator messages")
     completion = orders.add_parser("completion", help="completion for bash: source <(linuxcnc-ctl completion)")
-    completion.set_defaults(action=None, words=[*orders.choices])
+    completion.set_defaults(action=None)
     return parser
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Entry point; returns the exit code."""
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    options = parser.parse_args(arguments)
     if options.action is None:
-        print(f"complete -W '{' '.join(options.words)}' linuxcnc-ctl")
+        print(bash_completion(parser))
         return 0
     if options.namespace is not None:
         os.environ[namespace.VARIABLE] = options.namespace

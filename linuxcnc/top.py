@@ -24,6 +24,7 @@ from nml import namespace
 
 RENEWALS = 10  # frames per host second
 KEPT_MESSAGES = 5
+KEPT_ORDERS = 5
 COLOURS = {"on": "green", "off": "yellow", "estop-reset": "yellow", "estop": "red"}
 
 
@@ -47,22 +48,27 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _watch(console: Console, once: bool) -> None:
     messages: deque[tuple[int, str]] = deque(maxlen=KEPT_MESSAGES)
+    orders: deque[linuxcnc.order] = deque(maxlen=KEPT_ORDERS)
+    notes = linuxcnc.order_channel()
     console.status.poll()
     if once:
-        Terminal().print(frame(console, messages))
+        Terminal().print(frame(console, messages, orders))
         return
-    with Live(frame(console, messages), screen=True, refresh_per_second=RENEWALS) as live:
+    with Live(frame(console, messages, orders), screen=True, refresh_per_second=RENEWALS) as live:
         while True:
             console.status.wait(1.0 / RENEWALS)
             console.status.poll()
             while (message := console.errors.poll()) is not None:
                 messages.append(message)
-            live.update(frame(console, messages))
+            while (order := notes.poll()) is not None:
+                orders.append(order)
+            live.update(frame(console, messages, orders))
 
 
-def frame(console: Console, messages: Iterable[tuple[int, str]]) -> Group:
+def frame(console: Console, messages: Iterable[tuple[int, str]], orders: Iterable[linuxcnc.order]) -> Group:
     """One screen."""
-    return Group(_state(console.status), _axes(console), _process(console.status), *_messages(messages))
+    parts = (_state(console.status), _axes(console), _process(console.status))
+    return Group(*parts, *(Text(f"{order.origin}: {order.text}", "dim") for order in orders), *_messages(messages))
 
 
 def _state(status: linuxcnc.stat) -> Text:

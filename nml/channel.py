@@ -30,6 +30,8 @@ class Channel:
 
     line: BufferLine
     process: ProcessLine
+    remote = False
+    """Whether the buffer is reached through a server, which then knows who writes."""
 
     def __new__(cls, config: Configuration = None, buffer: str = "", process: str = "xemc") -> Channel:
         parsed = config if isinstance(config, NmlConfig) else NmlConfig.load(config)

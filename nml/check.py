@@ -32,10 +32,11 @@ MESSAGES: dict[str, tuple[type[Message], ...]] = {
     "emcmotCommand": (nml.emc.emcmot.EMCMOT_COMMAND,),
     "emcmotStatus": (nml.emc.emcmot.EMCMOT_STATUS,),
     "emcmotError": (nml.emc.emcmot.EMCMOT_ERROR,),
+    "emcOrders": (nml.emc.EMC_ORDER_NOTE,),
 }
 """What each buffer of a controller must be able to carry."""
 
-_NATIVE = OWN_BUFFERS - {"toolTable"}
+_NATIVE = OWN_BUFFERS - {"toolTable", "emcOrders"}
 """Buffers that the servo thread uses without Python: plain C layout in shared memory."""
 
 

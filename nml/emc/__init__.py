@@ -16,6 +16,7 @@ from nml.emc.joint import *
 from nml.emc.lube import *
 from nml.emc.motion import *
 from nml.emc.operator import *
+from nml.emc.orders import *
 from nml.emc.spindle import *
 from nml.emc.stat import *
 from nml.emc.structs import *

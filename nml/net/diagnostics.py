@@ -12,16 +12,18 @@ from dataclasses import dataclass
 
 from nml.net import wire
 
-READ, WRITE = 1, 4
+READ, PEEK, WRITE = 1, 3, 4
 _BIG, _SMALL = ">", "<"
 _NS = 1e-9
+NO_INTERVAL = 10_000.0
+"""Shortest interval, in s, of a process that has not accessed the buffer twice."""
 ENTRY_SIZE = struct.calcsize(">16s32sId6I6d2I")
 """Bytes of the report for each process."""
 
 
 @dataclass(slots=True)
 class Usage:
-    """What one process, local or remote, did with a buffer. Times in s of the host's monotonic clock."""
+    """What one process, local or remote, did with a buffer. Times in s since 1970."""
 
     name: str
     host: str
@@ -37,15 +39,15 @@ class Usage:
     over_socket: float = 0.0
     first: float = 0.0
     last: float = 0.0
-    shortest: float = 0.0
+    shortest: float = NO_INTERVAL
     longest: float = 0.0
 
     def count(self, access: int, message_id: int, size: int) -> None:
         """Take note of an access that moved ``size`` bytes (0: nothing new)."""
-        now = time.monotonic()
+        now = time.time()
         if self.accesses:
             gap = now - self.last
-            self.shortest = min(self.shortest, gap) if self.shortest else gap
+            self.shortest = min(self.shortest, gap)
             self.longest = max(self.longest, gap)
         else:
             self.first = now
@@ -67,12 +69,12 @@ def introduced(info: bytes) -> Usage:
 
 
 def local_usages(counts: Iterable[dict[str, object]]) -> list[Usage]:
-    """The counts that ``Channel.diagnostics`` gives."""
-    host = socket.gethostname()
-    return [_local(host, one) for one in counts]
+    """The counts that ``Channel.diagnostics`` gives, whose times are of the host's monotonic clock."""
+    host, boot = socket.gethostname(), time.time() - time.monotonic()
+    return [_local(host, boot, one) for one in counts]
 
 
-def _local(host: str, count: dict[str, object]) -> Usage:
+def _local(host: str, boot: float, count: dict[str, object]) -> Usage:
     def number(key: str) -> int:
         value = count.get(key, 0)
         return value if isinstance(value, int) else 0
@@ -86,9 +88,9 @@ def _local(host: str, count: dict[str, object]) -> Usage:
         accesses=number("reads") + number("writes"),
         new=number("new_reads") + number("writes"),
         moved=float(number("bytes_read") + number("bytes_written")),
-        first=number("first_ns") * _NS,
-        last=number("last_ns") * _NS,
-        shortest=number("shortest_ns") * _NS,
+        first=boot + number("first_ns") * _NS,
+        last=boot + number("last_ns") * _NS,
+        shortest=number("shortest_ns") * _NS or NO_INTERVAL,
         longest=number("longest_ns") * _NS,
     )
 
@@ -97,7 +99,7 @@ def report(usages: Sequence[Usage], little_endian: bool) -> bytes:
     """The diagnostics reply after serial number and status; floating point in the client's byte order."""
     order = _SMALL if little_endian else _BIG
     total = 32 + len(usages) * ENTRY_SIZE
-    writer, reader = (_last(usages, access) for access in (WRITE, READ))
+    writer, reader = (_last(usages, kinds) for kinds in ((WRITE,), (READ, PEEK)))
     parts = [struct.pack(">ii", writer, reader), struct.pack(order + "d", time.time())]
     parts.append(struct.pack(">II", len(usages), total))
     for index, one in enumerate(usages):
@@ -116,9 +118,9 @@ def report(usages: Sequence[Usage], little_endian: bool) -> bytes:
     return b"".join(parts)
 
 
-def _last(usages: Sequence[Usage], access: int) -> int:
-    """Index of the process with the latest access of that kind, -1: none."""
-    found = [(one.last, index) for index, one in enumerate(usages) if one.access == access and one.accesses]
+def _last(usages: Sequence[Usage], kinds: tuple[int, ...]) -> int:
+    """Index of the process with the latest access of these kinds, -1: none."""
+    found = [(one.last, index) for index, one in enumerate(usages) if one.access in kinds and one.accesses]
     return max(found)[1] if found else -1
 
 

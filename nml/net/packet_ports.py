@@ -12,7 +12,7 @@ import os
 import select
 import socket
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 
 from nml.clock import host_now
 from nml.net import wire
@@ -46,12 +46,12 @@ class Peer:
 class Peers:
     """Answers packets, for clients that are told apart by address and token."""
 
-    def __init__(self, make_desk: Callable[[], Desk], largest: int = wire.LARGEST_UDP) -> None:
+    def __init__(self, make_desk: Callable[[str], Desk], largest: int = wire.LARGEST_UDP) -> None:
         self._make_desk = make_desk
         self._largest = largest
-        self._peers: OrderedDict[Hashable, Peer] = OrderedDict()
+        self._peers: OrderedDict[tuple[str, int], Peer] = OrderedDict()
 
-    def answer(self, address: Hashable, packet: bytes, now: float) -> bytes | None:
+    def answer(self, address: str, packet: bytes, now: float) -> bytes | None:
         """The reply to a packet; None for one that is no request, or an old one."""
         if len(packet) < wire.PACKET_REQUEST.size:
             return None
@@ -60,7 +60,7 @@ class Peers:
         expected = word4 if kind == Request.WRITE else wire.EXTRA_BYTES.get(kind, 0)
         if len(rest) != expected:
             return None
-        peer = self._peer((address, token))
+        peer = self._peer(address, token)
         if peer.serial == serial:
             return peer.reply
         if peer.serial is not None and (serial - peer.serial) & wire.MASK >= 1 << 31:
@@ -80,7 +80,8 @@ class Peers:
             return wire.READ_REPLY.pack(peer.count, CmsStatus.INSUFFICIENT_SPACE_ERROR, 0, word4, 1)
         return reply
 
-    def _peer(self, key: Hashable) -> Peer:
+    def _peer(self, address: str, token: int) -> Peer:
+        key = (address, token)
         peer = self._peers.get(key)
         if peer is not None and not peer.session.closed:
             self._peers.move_to_end(key)
@@ -89,7 +90,7 @@ class Peers:
             self._peers.pop(key).desk.close()
         if len(self._peers) >= PEERS:
             self._peers.popitem(last=False)[1].desk.close()
-        peer = self._peers[key] = Peer(self._make_desk())
+        peer = self._peers[key] = Peer(self._make_desk(address))
         return peer
 
     def close(self) -> None:
@@ -102,7 +103,7 @@ class Peers:
 class UdpPort:
     """The server's UDP socket."""
 
-    def __init__(self, address: tuple[str, int], loop: Loop, make_desk: Callable[[], Desk]) -> None:
+    def __init__(self, address: tuple[str, int], loop: Loop, make_desk: Callable[[str], Desk]) -> None:
         self._loop = loop
         self._peers = Peers(make_desk)
         family = socket.AF_INET6 if ":" in address[0] else socket.AF_INET
@@ -122,7 +123,7 @@ class UdpPort:
                 packet, address = self._sock.recvfrom(wire.LARGEST_UDP)
             except OSError:
                 return
-            reply = self._peers.answer(address, packet, host_now())
+            reply = self._peers.answer(f"{address[0]}:{address[1]}", packet, host_now())
             if reply is not None:
                 try:
                     self._sock.sendto(reply, address)
@@ -139,9 +140,10 @@ class UdpPort:
 class SerialPort:
     """The server's end of a serial line."""
 
-    def __init__(self, device: str, baud: int, loop: Loop, make_desk: Callable[[], Desk]) -> None:
+    def __init__(self, device: str, baud: int, loop: Loop, make_desk: Callable[[str], Desk]) -> None:
         self._loop = loop
         self._peers = Peers(make_desk, wire.LARGEST_FRAME)
+        self._device = device
         self._port = open_line(device, baud)
         self._fd: int = self._port.fileno()
         os.set_blocking(self._fd, False)
@@ -156,7 +158,7 @@ class SerialPort:
                 self._send()
             if events & select.EPOLLIN:
                 for packet in self._unframer.receive(os.read(self._fd, _CHUNK)):
-                    reply = self._peers.answer(None, packet, host_now())
+                    reply = self._peers.answer(self._device, packet, host_now())
                     if reply is not None and not self._out:
                         self._out = frame(reply)
                         self._send()

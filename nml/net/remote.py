@@ -202,6 +202,8 @@ def _without_text(body: bytes) -> bytearray:
 class RemoteChannel(Channel):
     """A channel whose buffer is elsewhere. Errors: ``LinkDown`` and ChannelTimeout while the server is away."""
 
+    remote = True
+
     def _open(self, line: BufferLine, process: ProcessLine) -> None:
         link = open_link(line, process)
         self._memory = None

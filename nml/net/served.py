@@ -7,6 +7,7 @@ to a broadcast queue, in which every client reads everything. Whatever can fail 
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,7 @@ from nml._buffer import Buffer
 from nml.channel import Channel
 from nml.codecs import Codec, codec
 from nml.config import ANY_BUFFER, BufferLine, NmlConfig, ProcessLine, ProcessType
+from nml.emc import orders
 from nml.errors import ChannelTimeout, ConfigError, DecodeError, EncodeError, NmlError, QueueFull, TooLong
 from nml.message import Command, Message
 from nml.net import diagnostics
@@ -28,6 +30,9 @@ LOCK_TIMEOUT = 0.05
 """s that a write waits for a process that holds the buffer; other clients wait with it."""
 SAME_ID = 0x4000_0000
 """Set in the id of a queued message that a client would otherwise take for its last one."""
+
+COMMAND_BUFFER = "emcCommand"
+"""The buffer whose writers are noted in emcOrders."""
 
 _Answer = tuple[int, int, int, bytes]
 
@@ -124,7 +129,7 @@ class SlotView:
 
     @property
     def may_write(self) -> bool:
-        return self._served.process.may_write and not self.locked
+        return self._served.process.may_write and not self.locked and self.name != orders.NOTE_BUFFER
 
     def fetch(self, consume: bool, last: int) -> _Answer:
         """status, id, was_read and encoded message for a client whose last message was ``last``."""
@@ -135,7 +140,7 @@ class SlotView:
         except NmlError as error:
             return _status_of(error), last, 1, b""
         if self._usage is not None:
-            self._usage.count(diagnostics.READ, message_id, len(body))
+            self._usage.count(diagnostics.READ if consume else diagnostics.PEEK, message_id, len(body))
         return status, message_id, was_read, body
 
     def _fetch(self, consume: bool, last: int) -> _Answer:
@@ -154,13 +159,16 @@ class SlotView:
             return 0, CmsStatus.PERMISSIONS_ERROR
         raw = self._raw
         try:
-            number = self._served.write(raw, self._form.decode(body), only_if_read)
+            message = self._form.decode(body)
+            number = self._served.write(raw, message, only_if_read)
         except NmlError as error:
             return raw.write_counter, _status_of(error)
         if not number:
             return raw.write_counter, CmsStatus.WRITE_WAS_BLOCKED
         if self._usage is not None:
             self._usage.count(diagnostics.WRITE, number, len(body))
+        if self.name == COMMAND_BUFFER and isinstance(message, Command):
+            self._desk.note(message, number)
         return number, CmsStatus.WRITE_OK
 
     def ask(self, question: int) -> tuple[int, int]:
@@ -259,8 +267,11 @@ def _status_of(error: NmlError) -> int:
 class Desk:
     """One client's place: which form of messages it takes, where it has logged in, which buffers it has open."""
 
-    def __init__(self, buffers: Mapping[int, ServedBuffer]) -> None:
+    def __init__(self, buffers: Mapping[int, ServedBuffer], origin: str, notes: Channel | None) -> None:
+        """``origin``: the client's address, for the ``notes`` about its commands."""
         self._buffers = buffers
+        self._origin = origin
+        self._notes = notes
         self._views: dict[int, SlotView] = {}
         self.kind = Kind.CODED
         self.logged_in: set[PasswordFile] = set()
@@ -284,6 +295,12 @@ class Desk:
             self.kind = kind
         return agreed
 
+    def note(self, command: Command, serial: int) -> None:
+        """Let those who watch know of a command that the client gave."""
+        if self._notes is not None:
+            with contextlib.suppress(NmlError):
+                self._notes.write(orders.note(command, serial, self._origin))
+
     def close(self) -> None:
         """Let go of everything that the client had open."""
         for view in self._views.values():
@@ -297,6 +314,7 @@ class Shelf:
     def __init__(self, config: NmlConfig, process: str) -> None:
         self.links: dict[WireLink, dict[int, ServedBuffer]] = {}
         self._served: list[ServedBuffer] = []
+        self._notes: Channel | None = None
         users: dict[Path, PasswordFile] = {}
         try:
             for line, process_line in served_lines(config, process):
@@ -307,6 +325,8 @@ class Shelf:
                 self._served.append(served)
                 for link in links_of(line):
                     self._place(served, self.links.setdefault(link, {}), link)
+                if line.name == orders.NOTE_BUFFER and process_line.may_write:
+                    self._notes = served.channel
         except BaseException:
             self.close()
             raise
@@ -320,9 +340,9 @@ class Shelf:
             raise ConfigError(message, served.line.place)
         buffers[number] = served
 
-    def desk(self, link: WireLink) -> Desk:
-        """A place for a new client of a link."""
-        return Desk(self.links[link])
+    def desk(self, link: WireLink, origin: str) -> Desk:
+        """A place for a new client of a link, who comes from ``origin``."""
+        return Desk(self.links[link], origin, self._notes)
 
     def close(self) -> None:
         """Let go of the buffers."""

@@ -186,9 +186,11 @@ class Server:
         self._shelf.close()
 
 
-def _session(kind: Callable[[Desk], SessionLike], make_desk: Callable[[], Desk]) -> tuple[SessionLike, Release]:
+def _session(
+    kind: Callable[[Desk], SessionLike], make_desk: Callable[[str], Desk], address: str
+) -> tuple[SessionLike, Release]:
     """A session for a new client, and what to do when it is gone."""
-    desk = make_desk()
+    desk = make_desk(address)
     return kind(desk), desk.close
 
 

@@ -212,10 +212,10 @@ class Connection:
 
 
 class Listener:
-    """A listening socket; ``make`` builds the session of a new connection and what to do when it ends."""
+    """A listening socket; ``make(address)`` builds the session of a new connection and what to do when it ends."""
 
     def __init__(
-        self, address: tuple[str, int], loop: Loop, make: Callable[[], tuple[SessionLike, Release]]
+        self, address: tuple[str, int], loop: Loop, make: Callable[[str], tuple[SessionLike, Release]]
     ) -> None:
         self._loop = loop
         self._make = make
@@ -229,7 +229,7 @@ class Listener:
         """Take the clients that wait."""
         for _ in range(64):
             try:
-                sock, _ = self._sock.accept()
+                sock, address = self._sock.accept()
             except BlockingIOError:
                 return
             except OSError as error:
@@ -241,7 +241,7 @@ class Listener:
                 sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
                 for option, value in _KEEPALIVE:
                     sock.setsockopt(socket.IPPROTO_TCP, option, value)
-            session, release = self._make()
+            session, release = self._make(f"{address[0]}:{address[1]}")
             Connection(sock, session, self._loop, release)
 
     def close(self) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
 
+from tests.support.nml_server import SOURCE
 from tests.support.stock import DRIVE
 from tests.support.stock_machine import needs_stock_machine, session
 
@@ -78,6 +80,24 @@ def test_our_module_sees_what_the_stock_module_sees() -> None:
     theirs, ours = session(OURS + "ready(); do('mode', linuxcnc.MODE_MDI); do('mdi', 'G0 X1 Y2')\n" + COMPARE)
     differing = {name: (value, ours[name]) for name, value in theirs.items() if not same(value, ours[name])}
     assert not differing
+
+
+def test_the_diagnostics_report_of_the_stock_server_has_our_layout() -> None:
+    (head, entries) = session(
+        f"sys.path.insert(0, {str(SOURCE)!r})\n"
+        "from tests.support.diagnosed import report\n"
+        "head, entries = report(5005)\n"
+        "out += [head, [[str(part) for part in entry] for entry in entries]]",
+        status="diag",
+    )
+    assert head[1] == 0
+    assert head[4] == pytest.approx(time.time(), abs=300.0)
+    assert head[6] == 32 + 140 * head[5]
+    (client,) = entries
+    assert client[:5] == ["b'tester'", "b'desk.example'", "4711", "1.5", "3"]
+    assert client[8] == "1"
+    assert float(client[12]) == float(client[13]) == pytest.approx(time.time(), abs=300.0)
+    assert client[14:16] == ["10000.0", "0.0"]
 
 
 def same(stock: Any, ours: Any) -> bool:

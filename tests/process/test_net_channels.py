@@ -14,7 +14,14 @@ import pytest
 import linuxcnc
 from nml.channel import Channel
 from nml.codecs import xdr
-from nml.emc import EMC_OPERATOR_ERROR, EMC_SPINDLE_ON, EMC_STAT, EMC_TASK_PLAN_EXECUTE, EMC_TOOL_TABLE
+from nml.emc import (
+    EMC_OPERATOR_ERROR,
+    EMC_ORDER_NOTE,
+    EMC_SPINDLE_ON,
+    EMC_STAT,
+    EMC_TASK_PLAN_EXECUTE,
+    EMC_TOOL_TABLE,
+)
 from nml.errors import BufferError_, ChannelTimeout, ConfigError, NmlError, QueueFull
 from nml.net import wire
 from nml.net.remote import RemoteChannel
@@ -358,6 +365,26 @@ def test_a_stock_program_gets_exactly_the_bytes_of_the_stock_status(tcp: Ends) -
         assert wire.READ_REPLY.unpack_from(reply) == (1, 2, 3876, 1, 0)
         assert reply[20:] == xdr.encode(EMC_STAT(line=11))
         assert reply[20:28] == bytes.fromhex("000007cf 00002a20")
+
+
+def test_who_watches_here_sees_the_commands_from_elsewhere_and_where_they_come_from(ends: Ends) -> None:
+    watcher = Channel(ends.server.config, "emcOrders", "xemc")
+    ends.client["emcCommand"].write(EMC_TASK_PLAN_EXECUTE(command="G0 X1"))
+    wait_until(watcher.has_news)
+    note = watcher.read()
+    assert (note.serial, note.order) == (1, "TASK_PLAN_EXECUTE command='G0 X1'")
+    assert note.origin.startswith(("127.0.0.1:", "/dev/"))
+    watcher.close()
+
+
+def test_nobody_can_put_words_into_the_mouth_of_others_from_elsewhere(tcp: Ends) -> None:
+    notes = Channel(tcp.server.remote(), "emcOrders", "xemc")
+    notes.write(EMC_ORDER_NOTE(serial=1, origin="halui", order="TASK_ABORT"))  # a write without confirmation
+    assert notes.queue_length() == 0
+    watcher = Channel(tcp.server.config, "emcOrders", "xemc")
+    assert watcher.read() is None
+    for channel in (notes, watcher):
+        channel.close()
 
 
 def test_the_client_module_says_when_the_machine_is_out_of_reach(

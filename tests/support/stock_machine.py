@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import pwd
+import re
 import shutil
 import subprocess
 import sys
@@ -140,16 +141,21 @@ def display(script: str, *, changes: dict[str, str] | None = None, seconds: floa
     return _run(wait, "", seconds, text, changes or {})
 
 
-def session(script: str, options: str = "", seconds: float = 120.0) -> list[Any]:
-    """Run ``script`` with our Python beside a stock machine: what it put into the list ``out``."""
+def session(script: str, options: str = "", seconds: float = 120.0, status: str = "") -> list[Any]:
+    """Run ``script`` with our Python beside a stock machine: what it put into the list ``out``.
+
+    ``options``: of the clients' process lines; ``status``: of the line of emcStatus.
+    """
     client = f"{WAIT_FOR_SERVER}{script}\nopen('out.json', 'w').write(json.dumps(out))\n"
-    return _run(client, options, seconds, DISPLAY, {})
+    return _run(client, options, seconds, DISPLAY, {}, status)
 
 
-def _run(client: str, options: str, seconds: float, display: str, changes: dict[str, str]) -> list[Any]:
+def _run(
+    client: str, options: str, seconds: float, display: str, changes: dict[str, str], status: str = ""
+) -> list[Any]:
     folder = Path(tempfile.mkdtemp(prefix="pyemc-stock-", dir="/var/tmp"))
     try:
-        _prepare(folder, client, options, display, changes)
+        _prepare(folder, client, options, display, changes, status)
         command = [*shield.SHIELD, "--mount", "--kill-child"]
         command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
         command += [str(SOURCE)]
@@ -161,8 +167,11 @@ def _run(client: str, options: str, seconds: float, display: str, changes: dict[
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _prepare(folder: Path, client: str, options: str, display: str, changes: dict[str, str]) -> None:
+def _prepare(
+    folder: Path, client: str, options: str, display: str, changes: dict[str, str], status: str
+) -> None:
     nml = Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()
+    nml = re.sub(r"^(B emcStatus\s.*)$", rf"\1 {status}", nml, flags=re.MULTILINE)
     axes = "".join(AXIS.format(letter=letter, number=number) for number, letter in enumerate("XYZ"))
     ini = INI.format(folder=folder) + axes
     for old, new in changes.items():

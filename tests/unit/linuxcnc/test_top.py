@@ -49,13 +49,14 @@ def test_one_frame_shows_the_machine(task, capsys):
     assert "coolant off" in text
 
 
-def test_messages_stand_below(task):
+def test_orders_and_messages_stand_below(task):
     console = Console()
     console.status.poll()
     terminal = Terminal(width=80, record=True, file=io.StringIO())
-    terminal.print(top.frame(console, [(linuxcnc.OPERATOR_ERROR, "joint 0 following error"), (12, "coolant is low")]))
+    messages = [(linuxcnc.OPERATOR_ERROR, "joint 0 following error"), (12, "coolant is low")]
+    terminal.print(top.frame(console, messages, [linuxcnc.order(7, "halui", "COOLANT_FLOOD_ON", 0.0)]))
     shown = terminal.export_text().rstrip().splitlines()
-    assert shown[-2:] == ["error: joint 0 following error", "text: coolant is low"]
+    assert shown[-3:] == ["halui: COOLANT_FLOOD_ON", "error: joint 0 following error", "text: coolant is low"]
 
 
 def test_without_a_machine_one_line_says_so(capsys):

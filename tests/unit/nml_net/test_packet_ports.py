@@ -20,7 +20,7 @@ class FakeShelf:
         self.status = FakeView(messages=[(7, b"abcd")])
         self.open = 0
 
-    def desk(self) -> FakeDesk:
+    def desk(self, origin: str) -> FakeDesk:
         self.open += 1
         desk = FakeDesk(n1=self.command, n2=self.status)
         desk.close = self._closed  # type: ignore[attr-defined]
