@@ -10,7 +10,7 @@ import { registerPanel } from "../core/panels.js";
 
 registerPanel({
   id: "samples",
-  title: () => _("Samples"),
+  title: () => _("Sample machines"),
   icon: "folder",
   order: 1,
   when: (config) => Boolean(config.wizard),

@@ -1,0 +1,144 @@
+"""What must not happen: a machine that goes on when its operator is gone, or obeys two of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.machine import wait_until
+from tests.support.webclient import WebClient, web_mill
+
+TOKENS = "operator 0123456789abcdef-operator\nreader 0123456789abcdef-reader\n"
+
+
+@pytest.fixture
+def mill(tmp_path: Path) -> Iterator[int]:
+    with web_mill(tmp_path) as (_, port):
+        yield port
+
+
+def jog_ended(observer: WebClient) -> None:
+    """The machine stands, short of its limit."""
+    observer.wait(lambda state: not state["jog"] and state["inpos"], "jog ended")
+    assert observer.state["position"][0] < 290, "stopped by the loss, not by the limit"
+
+
+def test_a_jog_stops_when_the_network_is_lost(mill: int, open_screen: Any) -> None:
+    screen = open_screen(mill)
+    screen.power_up()
+    with WebClient(mill, name="observer") as observer:
+        screen.hold("[data-jog='X+']")
+        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        screen.cut_network()
+        jog_ended(observer)
+        screen.page.wait_for_selector("#offline:visible")
+        screen.picture("no-connection.png")
+        screen.mend_network()
+        screen.page.wait_for_selector("#offline", state="hidden")
+        jog_ended(observer)
+        assert not observer.state["jog"], "a button that is still held does not start it again"
+
+
+def test_a_jog_stops_when_the_window_loses_the_focus(mill: int, open_screen: Any) -> None:
+    screen = open_screen(mill)
+    screen.power_up()
+    with WebClient(mill, name="observer") as observer:
+        screen.hold("[data-jog='X+']")
+        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        screen.page.evaluate("window.dispatchEvent(new Event('blur'))")
+        jog_ended(observer)
+
+
+def test_a_jog_stops_when_the_page_is_closed(mill: int, open_screen: Any) -> None:
+    screen = open_screen(mill)
+    screen.power_up()
+    with WebClient(mill, name="observer") as observer:
+        screen.hold("[data-jog='X+']")
+        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        screen.page.close()
+        jog_ended(observer)
+        observer.wait(lambda state: state["control"] is None, "the controls are free again")
+
+
+def test_keys_jog_only_after_they_were_switched_on_and_stop_when_let_go(mill: int, open_screen: Any) -> None:
+    screen = open_screen(mill)
+    screen.power_up()
+    keyboard = screen.page.keyboard
+    with WebClient(mill, name="observer") as observer:
+        screen.page.focus("body")
+        keyboard.down("ArrowRight")
+        keyboard.up("ArrowRight")
+        screen.page.click("#keyboard-jog")
+        assert observer.state["position"][0] == 0
+        keyboard.down("ArrowRight")
+        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        keyboard.up("ArrowRight")
+        jog_ended(observer)
+        there = observer.state["position"][0]
+        screen.page.focus(".spindle input")
+        keyboard.down("ArrowRight")
+        keyboard.up("ArrowRight")
+        screen.page.click("#keyboard-jog")
+        assert observer.state["position"][0] == there, "keys belong to the field that has the focus"
+
+
+def test_a_second_operator_sees_who_has_the_controls_and_asks_for_them(mill: int, open_screen: Any) -> None:
+    first = open_screen(mill, preferences={"name": '"Bench"'})
+    first.power_up()
+    second = open_screen(mill, preferences={"name": '"Office"'})
+    second.page.wait_for_selector("#operator:has-text('Bench')")
+    assert second.page.is_disabled("[data-jog='X+']")
+    assert second.page.is_disabled("#power")
+    assert second.page.is_enabled("#estop"), "stopping is always allowed"
+    assert second.page.is_enabled("#stop")
+    second.page.click("#operator")
+    second.press("Ask for them", "dialog[open]")
+    first.wait_text("Office asks for the controls.")
+    first.press("Hand over", "dialog[open]")
+    second.page.wait_for_selector("#operator:has-text('You have the controls')")
+    first.page.wait_for_selector("#operator:has-text('Office')")
+    assert first.page.is_disabled("[data-jog='X+']")
+
+
+def test_a_reader_sees_everything_and_can_do_nothing(tmp_path: Path, open_screen: Any) -> None:
+    token_file = tmp_path / "tokens"
+    token_file.write_text(TOKENS)
+    token_file.chmod(0o600)
+    with web_mill(tmp_path, extra=f"[WEB]\nTOKEN_FILE = {token_file}") as (_, port):
+        worker = open_screen(port, token="0123456789abcdef-operator")
+        worker.power_up()
+        worker.send_mdi("G0 X7")
+        worker.wait_position("X", 7)
+        reader = open_screen(port, token="0123456789abcdef-reader")
+        reader.wait_position("X", 7)
+        reader.page.wait_for_selector("#operator:has-text('Watching')")
+        assert "token" not in reader.page.url, "the token does not stay in the address bar"
+        for control in ("#estop", "#power", "#home-all", "[data-jog='X+']", "#run", "#stop"):
+            assert reader.page.is_disabled(control), control
+
+
+def test_without_the_right_token_nothing_is_shown(tmp_path: Path, open_screen: Any) -> None:
+    token_file = tmp_path / "tokens"
+    token_file.write_text(TOKENS)
+    token_file.chmod(0o600)
+    with web_mill(tmp_path, extra=f"[WEB]\nTOKEN_FILE = {token_file}") as (_, port):
+        screen = open_screen(port, wait=False)
+        screen.wait_text("This machine asks for a token")
+        assert screen.page.locator("#rail [role=tab]").count() == 0
+        screen.page.fill("#offline input", "0123456789abcdef-operator")
+        screen.press("Connect", "#offline")
+        screen.wait_state("E-stop")
+
+
+def test_an_abort_from_one_screen_stops_what_another_started(mill: int, open_screen: Any) -> None:
+    first = open_screen(mill)
+    first.power_up()
+    second = open_screen(mill)
+    first.send_mdi("G1 X250 F1200")
+    wait_until(lambda: second.position("X") > 2, "moving")
+    second.page.click("#stop")
+    second.wait_state("Ready")
+    assert second.position("X") < 240
