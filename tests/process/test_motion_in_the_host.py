@@ -2,75 +2,37 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 
 import pytest
 
-from hal.realtime import Host
-from nml.channel import Channel
-from nml.emc.emcmot import EMCMOT_COMMAND, MotCommand, MotionFlag
 from nml.emc.emcmot import MotCommand as C
+from nml.errors import HalError
+from tests.support.motion_host import MotionHost
 
 pytestmark = pytest.mark.process
-PATIENCE = 20.0  # s; a watchdog, not a claim about speed
 
 
-class Machine:
-    """A host with motion whose motors follow at once, and the three buffers as task has them."""
-
-    def __init__(self, *arguments: str, coordinates: str = "xyz") -> None:
-        self.host = Host()
-        self.host.load("trivkins", [f"coordinates={coordinates}"])
-        self.host.load("motmod", [f"num_joints={len(coordinates)}", *arguments])
-        self.hal = self.host.hal
-        for joint in range(len(coordinates)):
-            self.hal.net(f"pos{joint}", [f"joint.{joint}.motor-pos-cmd", f"joint.{joint}.motor-pos-fb"])
-        self.host.add_function("motion-command-handler", "servo-thread")
-        self.host.add_function("motion-controller", "servo-thread")
-        self.command = Channel(None, "emcmotCommand", "emc")
-        self.status = Channel(None, "emcmotStatus", "emc")
-        self.error = Channel(None, "emcmotError", "emc")
-        self.hal.start_threads()
-        for joint in range(len(coordinates)):
-            self.send(C.SET_JOINT_VEL_LIMIT, joint=joint, vel=100.0)
-            self.send(C.SET_JOINT_ACC_LIMIT, joint=joint, acc=1000.0)
-            self.send(C.SET_JOINT_HOMING_PARAMS, joint=joint, home_sequence=0)
-            self.send(C.JOINT_ACTIVATE, joint=joint)
-            self.send(C.SET_AXIS_VEL_LIMIT, axis=joint, vel=100.0)
-            self.send(C.SET_AXIS_ACC_LIMIT, axis=joint, acc=1000.0)
-
-    def send(self, code: MotCommand, **fields: object) -> int:
-        return self.command.write(EMCMOT_COMMAND(command=int(code), **fields))
-
-    def wait(self, condition: object, what: str):
-        deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline:
-            status = self.status.peek() or self.status.read()
-            if status is not None and condition(status):  # type: ignore[operator]
-                return status
-            time.sleep(0.002)
-        raise AssertionError(f"{what}: not within {PATIENCE} s")
-
-    def done(self, serial: int):
-        return self.wait(
-            lambda s: s.commandNumEcho >= serial and s.depth == 0 and s.motionFlag & MotionFlag.INPOS, "motion done"
-        )
-
-    def close(self) -> None:
-        self.host.close()
-        for channel in (self.command, self.status, self.error):
-            channel.close()
+MACHINE = """\
+loadrt trivkins coordinates=xyz
+loadrt motmod num_joints=3
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net x joint.0.motor-pos-cmd joint.0.motor-pos-fb
+net y joint.1.motor-pos-cmd joint.1.motor-pos-fb
+net z joint.2.motor-pos-cmd joint.2.motor-pos-fb
+"""
 
 
 @pytest.fixture
-def machine() -> Iterator[Machine]:
-    made = Machine()
-    yield made
-    made.close()
+def machine() -> Iterator[MotionHost]:
+    with MotionHost(MACHINE) as made:
+        for joint in range(3):
+            made.configure(joint)
+        yield made
 
 
-def test_a_program_of_lines_ends_where_it_says(machine: Machine) -> None:
+def test_a_program_of_lines_ends_where_it_says(machine: MotionHost) -> None:
     machine.send(C.ENABLE)
     machine.wait(lambda s: s.motion_state == 1, "enabled")
     machine.done(machine.send(C.JOINT_HOME, joint=-1))
@@ -85,7 +47,7 @@ def test_a_program_of_lines_ends_where_it_says(machine: Machine) -> None:
     assert machine.error.read() is None
 
 
-def test_a_refused_command_sends_its_reason(machine: Machine) -> None:
+def test_a_refused_command_sends_its_reason(machine: MotionHost) -> None:
     serial = machine.send(C.JOG_CONT, joint=0, mode=1, vel=1.0)
     machine.wait(lambda s: s.commandNumEcho >= serial, "command taken")
     error = machine.error.read()
@@ -93,7 +55,7 @@ def test_a_refused_command_sends_its_reason(machine: Machine) -> None:
     assert error.text == "JOG_CONT refused: motion is not enabled"
 
 
-def test_pins_follow_the_state(machine: Machine) -> None:
+def test_pins_follow_the_state(machine: MotionHost) -> None:
     assert machine.hal.value("joint.0.amp-enable-out") is False
     machine.send(C.ENABLE)
     machine.wait(lambda s: s.motion_state == 1, "enabled")
@@ -106,7 +68,7 @@ def test_pins_follow_the_state(machine: Machine) -> None:
     assert error.text == "motion stopped by enable input"
 
 
-def test_without_a_heartbeat_motion_stops_and_switches_off(machine: Machine) -> None:
+def test_without_a_heartbeat_motion_stops_and_switches_off(machine: MotionHost) -> None:
     machine.send(C.ENABLE)
     machine.wait(lambda s: s.motion_state == 1, "enabled")
     machine.send(C.JOG_CONT, joint=0, mode=1, vel=20.0)
@@ -114,3 +76,50 @@ def test_without_a_heartbeat_motion_stops_and_switches_off(machine: Machine) -> 
     status = machine.wait(lambda s: s.motion_state == 0, "switched off")
     assert status.task_lost
     assert status.joint_status[0].vel_cmd == 0.0
+
+
+TABLE = """\
+loadrt xyzac-trt-kins sparm=identityfirst
+loadrt motmod num_joints=5
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net x joint.0.motor-pos-cmd joint.0.motor-pos-fb
+net y joint.1.motor-pos-cmd joint.1.motor-pos-fb
+net z joint.2.motor-pos-cmd joint.2.motor-pos-fb
+net a joint.3.motor-pos-cmd joint.3.motor-pos-fb
+net c joint.4.motor-pos-cmd joint.4.motor-pos-fb
+net type motion.analog-out-03 motion.switchkins-type
+setp xyzac-trt-kins.x-rot-point 10
+"""
+
+
+def test_an_analog_output_switches_the_kinematics_and_pins_give_its_geometry() -> None:
+    with MotionHost(TABLE) as machine:
+        for joint in range(5):
+            machine.configure(joint)
+        machine.send(C.ENABLE)
+        machine.wait(lambda s: s.motion_state == 1, "enabled")
+        machine.done(machine.send(C.JOINT_HOME, joint=-1))
+        machine.done(machine.send(C.JOG_ABS, joint=4, mode=1, vel=90.0, offset=90.0))
+        machine.send(C.COORD)
+        machine.wait(lambda s: s.motion_state == 3, "coordinated mode")
+        assert [machine.hal.value(f"kinstype.is-{n}") for n in range(3)] == [True, False, False]
+        # the first status that shows the machine at rest again has the pose of the new kinematics
+        status = machine.done(machine.send(C.SET_AOUT, out=3, now=1, minLimit=1.0))
+        assert (status.carte_pos_cmd.tran.x, status.carte_pos_cmd.tran.y) == pytest.approx((10.0, 10.0))
+        assert [machine.hal.value(f"kinstype.is-{n}") for n in range(3)] == [False, True, False]
+        assert machine.errors() == []
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["xyzac-trt-kins", "coordinates=xyzab"], "coordinates=xyzab: c is missing"),
+        (["5axiskins", "coordinates=xyzbcwq"], "1 to 16 letters"),
+        (["pumakins", "sparm=last"], "only identityfirst is known"),
+        (["millturn", "coordinates=xyz"], "unknown argument coordinates; it takes none"),
+    ],
+)
+def test_a_wrong_argument_of_a_kinematics_is_named(words: list[str], complaint: str) -> None:
+    with pytest.raises(HalError, match=complaint):
+        MotionHost(f"loadrt {' '.join(words)}")
