@@ -30,19 +30,55 @@ def logger(task):
     thread.join()
 
 
-def move(task, logger, position, motion_type=linuxcnc.MOTION_TYPE_FEED, offset=(0.0,) * 9):
-    """Put the machine somewhere and wait until it is logged."""
-    known = logger.npts
+def move(task, logger, position, motion_type=linuxcnc.MOTION_TYPE_FEED, offset=(0.0,) * 9, straight=False):
+    """Put the machine somewhere and wait until it is logged, as a new point or further on the same straight."""
+    known, last = logger.npts, logger.last()
     task.status.motion.traj.position = (*position, *[0.0] * (9 - len(position)))
     task.status.motion.traj.motion_type = motion_type
     task.status.task.toolOffset = offset
     task.publish()
-    wait_until(lambda: logger.npts > known, "a new point")
+    wait_until(lambda: logger.npts > known or (straight and logger.last() != last), "a new point")
 
 
-def test_points_are_the_tool_tip_in_inches_and_degrees(task, logger):
-    move(task, logger, (25.4, 50.8, 0.0, 90.0), offset=(0.0, 0.0, 25.4, *[0.0] * 6))
-    assert logger.last() == pytest.approx((1.0, 2.0, -1.0, 90.0, 0.0, 0.0))
+def test_points_are_the_tool_tip_in_machine_units_and_the_rotations(task, logger):
+    move(task, logger, (25.4, 50.8, 0.0, 90.0, 10.0, 5.0), offset=(0.0, 0.0, 25.4, *[0.0] * 6))
+    assert logger.last() == pytest.approx((25.4, 50.8, -25.4, 90.0, -10.0, 5.0))
+
+
+@pytest.mark.parametrize(
+    ("geometry", "is_xyuv", "point"),
+    [
+        ("XYZ", 0, (1, 2, 3, 4, -5, 6)),
+        ("-XY-Z", 0, (-1, 2, -3, 4, -5, 6)),
+        ("XYZUVW", 0, (8, 10, 12, 4, -5, 6)),
+        ("AXZ", 0, (1, 0, 3, 4, -5, 6)),
+        ("UVW", 0, (7, 8, 9, 4, -5, 6)),
+        ("XYUV", 1, (1, 2, 0.5, 7, 8, 2.5)),
+    ],
+)
+def test_the_geometry_makes_the_picture(task, geometry, is_xyuv, point):
+    logger = linuxcnc.positionlogger(linuxcnc.stat(), *COLOURS, geometry, is_xyuv)
+    logger.set_depth(0.5, 2.5)
+    task.status.motion.traj.position = tuple(map(float, range(1, 10)))
+    task.publish()
+    threading.Timer(0.1, logger.stop).start()
+    logger.start(0.01)
+    assert logger.last(0) == point
+
+
+def test_the_inner_points_of_a_straight_are_left_out_and_corners_kept(task, logger):
+    move(task, logger, (1.0, 0.0))
+    for x in (2.0, 3.0, 4.0):
+        move(task, logger, (x, x - 1.0), straight=x > 2.0)
+    move(task, logger, (4.0, 0.0))
+    assert [point[:2] for point, _ in logger.points[-3:]] == [(1.0, 0.0), (4.0, 3.0), (4.0, 0.0)]
+
+
+def test_colours_can_be_changed(task, logger):
+    logger.set_colors(*COLOURS[::-1])
+    assert logger.get_colors() == tuple(COLOURS[::-1])
+    move(task, logger, (1.0,), linuxcnc.MOTION_TYPE_TRAVERSE)
+    assert logger.points[-1][1] == COLOURS[4]
 
 
 def test_lines_have_the_colour_of_their_motion(task, logger):
@@ -53,7 +89,7 @@ def test_lines_have_the_colour_of_their_motion(task, logger):
 
 def test_standing_still_adds_no_points(task, logger):
     move(task, logger, (1.0,))
-    move(task, logger, (2.0,))
+    move(task, logger, (1.0, 1.0))
     assert len({point for point, _ in logger.points}) == logger.npts
 
 
