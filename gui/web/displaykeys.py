@@ -62,6 +62,10 @@ def configuration(ini: IniFile, settings: Settings) -> dict[str, Any]:
             "feed_max": override(ini, "MAX_FEED_OVERRIDE", 1.0),
             "rapid_max": override(ini, "MAX_RAPID_OVERRIDE", 1.0),
         },
+        "max_velocity": ini.real(
+            "TRAJ", "MAX_LINEAR_VELOCITY", max([axis["max_velocity"] for axis in axes(ini)] or [1.0])
+        ),
+        "no_force_homing": ini.boolean("TRAJ", "NO_FORCE_HOMING", False),
         "increments": increments(
             ini.find("DISPLAY", "INCREMENTS", DEFAULT_INCREMENTS[mm]), LENGTHS, mm, ini, "INCREMENTS"
         ),

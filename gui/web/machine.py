@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import enum
+import os
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -67,6 +68,8 @@ class Machine:
         self._status = linuxcnc.stat()
         self._errors = open_channel("emcError")
         self._lanes = {lane: (ThreadPoolExecutor(1, f"web-{lane.value}"), linuxcnc.command()) for lane in Lane}
+        for _, command in self._lanes.values():
+            command.origin = f"web[{os.getpid()}]"
         self._waiting: list[Waiting] = []
         self._texts: dict[int, list[str]] = {}
         self._own: deque[int] = deque(maxlen=SERIALS_KEPT)  # serial numbers of orders of ours

@@ -1,6 +1,6 @@
 """The tool path of the loaded program, computed by a process of its own and handed on in chunks.
 
-The worker (``python -m rs274ngc.preview``) may take long, fail or be killed: the server goes on, and says what
+The worker (``python -m rs274ngc.dryrun``) may take long, fail or be killed: the server goes on, and says what
 became of the picture. A preview is ``whole`` only if the worker came to the program's end and assumed nothing on its
 way.
 """
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-MODULE = "rs274ngc.preview"
+MODULE = "rs274ngc.dryrun"
 PIECE = 8192  # rows of a chunk
 ROTARY = slice(3, 6)
 LARGEST_HEADER = 1 << 20
@@ -42,6 +42,17 @@ ROW = np.dtype(
 )  # fmt: skip
 """A row of the worker: mm, degrees, mm/min."""
 MOST_OUTSIDE = 100
+AXES = "XYZABCUVW"
+ROTARY_AXES = (3, 4, 5)
+MM_PER_INCH = 25.4
+INCHES = 1  # stat.program_units
+CARRIED = frozenset(
+    (
+        "G7", "G8", "G17", "G18", "G19", "G17.1", "G18.1", "G19.1", "G20", "G21", "G54", "G55", "G56", "G57", "G58",
+        "G59", "G59.1", "G59.2", "G59.3", "G90", "G91", "G90.1", "G91.1", "G93", "G94", "G95", "G96", "G97", "G98", "G99",
+    )
+)  # fmt: skip
+"""Modal codes that a line of MDI finds in force."""
 
 
 @dataclass(slots=True)
@@ -152,7 +163,9 @@ class Preview:
 
     async def _work(self, job: Job) -> dict[str, Any]:
         """Read the worker's frames; its last one."""
-        worker = await start_worker(MODULE, str(job.path), "-i", str(self._ini), "--piece", str(PIECE))
+        worker = await start_worker(
+            MODULE, str(job.path), "-i", str(self._ini), "--piece", str(PIECE), *self._present(modes=False)
+        )
         assert worker.stdout is not None
         try:
             while (line := await worker.stdout.readline()).strip():
@@ -234,19 +247,43 @@ class Preview:
 
     async def state_at(self, path: Path, line: int) -> dict[str, Any]:
         """The state that the program has when a line is next."""
-        return await self._ask(str(path), "--state-at", str(line))
+        return await self._ask(str(path), "--state-at", str(line), *self._present(modes=False))
 
     async def check_block(self, text: str) -> dict[str, Any]:
         """A dry run of one MDI line from where the machine stands; CallError gcode where it is wrong."""
-        position = ",".join(f"{value:.9g}" for value in self._state.get("position", [0.0] * 9))
-        return await self._ask(
-            f"--mdi={text}", f"--start={position}", f"--tool={self._state.get('tool_in_spindle', 0)}"
-        )
+        return await self._ask(f"--mdi={text}", *self._present(modes=True))
+
+    def _present(self, modes: bool) -> list[str]:
+        """How the machine stands now, as arguments of the worker; ``modes``: with its modal codes."""
+        values = self._state.values
+        if "position" not in values:
+            return []
+        arguments = [
+            f"--start={','.join(f'{value:.9g}' for value in values['position'])}",
+            f"--tool={values['tool_in_spindle']}",
+        ]
+        if modes:
+            arguments.append(f"--begin={' '.join(code for code in values['gcode_text'] if code in CARRIED)}")
+        if any(values["tool_offset"]):
+            arguments.append(f"--begin={self._tool_offset_block(values)}")
+        if values["block_delete"]:
+            arguments.append("--block-delete")
+        return arguments
+
+    def _tool_offset_block(self, values: dict[str, Any]) -> str:
+        """The tool offset in force, whatever it came from, in program units."""
+        inch = values["program_units"] == INCHES
+        offset = [
+            value * (1.0 if axis in ROTARY_AXES else self._mm / (MM_PER_INCH if inch else 1.0))
+            for axis, value in enumerate(values["tool_offset"])
+        ]
+        words = " ".join(f"{letter}{value:.6f}" for letter, value in zip(AXES, offset, strict=True) if value)
+        return f"{'G20' if inch else 'G21'} G43.1 {words}"
 
     async def check_file(self, path: Path) -> list[dict[str, Any]]:
         """The errors of a program: one, where the interpreter stops."""
         try:
-            await self._ask(str(path), "--check")
+            await self._ask(str(path), "--check", *self._present(modes=False))
         except CallError as wrong:
             if wrong.code != "gcode":
                 raise
@@ -260,14 +297,14 @@ class Preview:
             async with asyncio.timeout(CHECK_SECONDS):
                 answer, errors = await worker.communicate()
         except TimeoutError:
-            raise CallError("busy", "the check takes too long") from None
+            raise CallError("check", "the check takes too long") from None
         finally:
             await end_worker(worker)
         try:
             found = json.loads(answer.splitlines()[-1])
         except (ValueError, IndexError):
             said = errors.decode(errors="replace").strip().splitlines()
-            raise CallError("gcode", "{reason}", reason=said[-1] if said else "?", line=0, column=0, file="") from None
+            raise CallError("check", "this cannot be checked: {reason}", reason=said[-1] if said else "?") from None
         error = found.get("error")
         if error:
             raise CallError(

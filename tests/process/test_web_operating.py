@@ -156,3 +156,39 @@ def test_a_wrong_program_is_a_part_and_says_so(client):
     end = next(frame for frame in client.frames if frame["t"] == "path_end")
     assert not end["whole"]
     assert "line 2" in end["text"]
+
+
+def test_mdi_is_checked_from_where_the_machine_stands(client):
+    client.ready()
+    client.call("mdi.run", text="G0 X290 Y4")
+    assert client.call("mdi.check", text="G91 G0 X5")["end"][:2] == [295.0, 4.0]
+    assert client.call("mdi.check", text="G91 G0 X50")["outside"][0]["axis"] == "X"
+    with pytest.raises(Refused) as refused:
+        client.call("mdi.check", text="G1 X")
+    assert refused.value.code == "gcode"
+    assert client.state["position"][0] == 290.0
+
+
+def test_run_from_a_line_shows_the_difference_first(client):
+    client.ready()
+    client.upload("later.ngc", "G21 G90\nG55\nM3 S500\nG0 X5\nG1 F600 X10\nX20\nM2\n")
+    client.call("program.open", path="later.ngc")
+    client.wait(lambda state: state["program"], "loaded")
+    with pytest.raises(Refused, match="difference"):
+        client.call("program.run", line=5)
+    check = client.call("program.run_from_check", line=5)
+    assert {"G codes", "M codes", "position"} <= {one["what"] for one in check["differences"]}
+    assert client.state["position"][0] == 0.0
+    client.call("program.run", line=5, token=check["token"])
+    client.wait(lambda state: state["position"][0] == 20.0, "ran")
+
+
+def test_run_from_a_line_that_is_never_reached_is_blocked(client):
+    client.ready()
+    client.upload("short.ngc", "G21 G90\nM2\nG0 X5\n")
+    client.call("program.open", path="short.ngc")
+    client.wait(lambda state: state["program"], "loaded")
+    check = client.call("program.run_from_check", line=3)
+    assert check["blocked"]
+    with pytest.raises(Refused):
+        client.call("program.run", line=3, token=check["token"])
