@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import zlib
-from enum import Enum
+from enum import IntEnum
 from typing import Protocol
 
 import nml.emc.emcmot
@@ -73,12 +73,15 @@ class Xdr(Encoded):
         return xdr_images.encode(image, self._preamble)
 
 
-class Kind(Enum):
-    """How a client takes messages."""
+class Kind(IntEnum):
+    """How a client takes messages; an integer, because it is looked up for every request."""
 
-    CODED = "in the encoding of the buffer's line, as stock programs do"
-    NATIVE = "as images of memory, once two of our own ends know that they agree"
-    TEXT = "as text that a person reads and types"
+    CODED = 0
+    """In the encoding of the buffer's line, as stock programs do."""
+    NATIVE = 1
+    """As images of memory, once two of our own ends know that they agree."""
+    TEXT = 2
+    """As text that a person reads and types."""
 
 
 def form(kind: Kind, line: BufferLine) -> Form:
