@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from emctask.config import MachineConfig, read_config
+from emctask.inipins import IniPins
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from emctask.operatorline import OperatorLine
@@ -60,6 +61,7 @@ def _stop(number: int, frame: object) -> None:
 def build(ini: IniFile, config: MachineConfig) -> Task:
     """Connect to everybody, configure motion, start the interpreter; PyemcError when that does not work."""
     nml = NmlConfig.load()
+    pins = IniPins(config)
 
     def channel(buffer: str) -> Channel:
         return Channel(nml, buffer, process="emc")
@@ -77,6 +79,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
         io,
         StatusWriter(config, channel("emcStatus")),
         OperatorLine(channel("emcError")),
+        pins,
     )
     task.plan.startup(config.startup_code)
     return task

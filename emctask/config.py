@@ -76,6 +76,8 @@ class JointConfig:
     home_flags: int
     home_sequence: int
     volatile_home: bool
+    max_jerk: float
+    """0: no limit."""
     compensation: list[tuple[float, float, float]]
 
 
@@ -87,6 +89,8 @@ class AxisConfig:
     max_limit: float
     max_velocity: float
     max_acceleration: float
+    max_jerk: float
+    """0: no limit."""
     offset_ratio: float
     locking_joint: int
 
@@ -104,6 +108,18 @@ class SpindleConfig:
 
 
 @dataclass(slots=True)
+class BlendConfig:
+    """How segments are joined: [TRAJ]ARC_BLEND_*."""
+
+    enable: bool
+    fallback_enable: bool
+    optimization_depth: int  # segments
+    gap_cycles: float  # servo periods; motion's planner has no use for it
+    ramp_freq: float  # Hz
+    tangent_kink_ratio: float  # motion's planner has no use for it
+
+
+@dataclass(slots=True)
 class MachineConfig:
     """Everything."""
 
@@ -118,12 +134,16 @@ class MachineConfig:
     max_velocity: float
     default_acceleration: float
     max_acceleration: float
+    max_jerk: float
+    """0: no limit."""
+    planner_type: int
     max_feed_override: float
     no_force_homing: bool
     no_probe_jog_error: bool
     no_probe_home_error: bool
     world_home: tuple[float, ...]
-    arc_blend: tuple[int, int, int, float]
+    position_file: Path | None
+    arc_blend: BlendConfig
     cycle_s: float
     mdi_queue: int
     startup_code: str
@@ -158,16 +178,21 @@ def read_config(ini: IniFile) -> MachineConfig:
         max_velocity=ini.real("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED, minimum=0.0),
         default_acceleration=ini.real("TRAJ", "DEFAULT_LINEAR_ACCELERATION", UNLIMITED, minimum=0.0),
         max_acceleration=ini.real("TRAJ", "MAX_LINEAR_ACCELERATION", UNLIMITED, minimum=0.0),
+        max_jerk=ini.real("TRAJ", "MAX_LINEAR_JERK", 0.0, minimum=0.0),
+        planner_type=ini.integer("TRAJ", "PLANNER_TYPE", 0, minimum=0, maximum=1),
         max_feed_override=ini.real("DISPLAY", "MAX_FEED_OVERRIDE", 1.0, minimum=0.0),
         no_force_homing=ini.boolean("TRAJ", "NO_FORCE_HOMING", False),
         no_probe_jog_error=ini.boolean("TRAJ", "NO_PROBE_JOG_ERROR", False),
         no_probe_home_error=ini.boolean("TRAJ", "NO_PROBE_HOME_ERROR", False),
         world_home=(*_point(ini, "TRAJ", "HOME", range(10)), *[0.0] * 9)[:9],
-        arc_blend=(
-            int(ini.boolean("TRAJ", "ARC_BLEND_ENABLE", True)),
-            int(ini.boolean("TRAJ", "ARC_BLEND_FALLBACK_ENABLE", False)),
-            ini.integer("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH", 50, minimum=1),
-            ini.real("TRAJ", "ARC_BLEND_RAMP_FREQ", 100.0, minimum=0.0),
+        position_file=ini.path("TRAJ", "POSITION_FILE", None) if ini.find("TRAJ", "POSITION_FILE") else None,
+        arc_blend=BlendConfig(
+            enable=ini.boolean("TRAJ", "ARC_BLEND_ENABLE", True),
+            fallback_enable=ini.boolean("TRAJ", "ARC_BLEND_FALLBACK_ENABLE", False),
+            optimization_depth=ini.integer("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH", 50, minimum=1),
+            gap_cycles=ini.real("TRAJ", "ARC_BLEND_GAP_CYCLES", 4.0),
+            ramp_freq=ini.real("TRAJ", "ARC_BLEND_RAMP_FREQ", 100.0, minimum=0.0),
+            tangent_kink_ratio=ini.real("TRAJ", "ARC_BLEND_KINK_RATIO", 0.1),
         ),
         cycle_s=ini.real("TASK", "CYCLE_TIME", 0.01, maximum=1.0),
         mdi_queue=ini.integer("TASK", "MDI_QUEUED_COMMANDS", 10_000, minimum=1),
@@ -212,6 +237,7 @@ def _axis(ini: IniFile, letter: str, joint_count: int) -> AxisConfig:
         max_limit=high,
         max_velocity=_positive(ini, section, "MAX_VELOCITY", 1.0),
         max_acceleration=_positive(ini, section, "MAX_ACCELERATION", 1.0),
+        max_jerk=ini.real(section, "MAX_JERK", 0.0, minimum=0.0),
         offset_ratio=ratio,
         locking_joint=ini.integer(section, "LOCKING_INDEXER_JOINT", -1, minimum=-1, maximum=joint_count - 1),
     )
@@ -252,6 +278,7 @@ def _joint(ini: IniFile, number: int, length_units: float, angle_units: float) -
         min_ferror=ini.real(section, "MIN_FERROR", ferror, minimum=0.0),
         max_velocity=_positive(ini, section, "MAX_VELOCITY", 1.0),
         max_acceleration=_positive(ini, section, "MAX_ACCELERATION", 1.0),
+        max_jerk=ini.real(section, "MAX_JERK", 0.0, minimum=0.0),
         home=ini.real(section, "HOME", 0.0),
         home_offset=ini.real(section, "HOME_OFFSET", 0.0),
         home_search_vel=ini.real(section, "HOME_SEARCH_VEL", 0.0),

@@ -106,6 +106,12 @@ class MotionClient:
         joints = self.status.joint_status
         return all(joints[n].homed for n in range(self.status.num_joints))
 
+    @property
+    def homing(self) -> bool:
+        """Does any joint home?"""
+        joints = self.status.joint_status
+        return any(joints[n].homing for n in range(self.status.num_joints))
+
     def room(self) -> int:
         """How many moves may be sent now."""
         return self.status.queueFree - len(self._in_flight) - RESERVE

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from emctask.config import AxisConfig, JointConfig, MachineConfig
+from emctask import positionfile
+from emctask.config import AxisConfig, BlendConfig, JointConfig, MachineConfig
 from emctask.motion import WATCHDOG_S, MotionClient
 from nml.emc.emcmot import MotCommand
 
@@ -12,11 +13,18 @@ def configure_motion(motion: MotionClient, config: MachineConfig) -> None:
     motion.send(MotCommand.SET_NUM_JOINTS, joint=len(config.joints))
     motion.send(MotCommand.SET_NUM_SPINDLES, spindle=len(config.spindles))
     motion.send(MotCommand.SET_HEARTBEAT_TIMEOUT, timeout=WATCHDOG_S)
-    _send_path(motion, config)
+    path_limits(motion, config)
+    motion.send(MotCommand.SET_MAX_FEED_OVERRIDE, scale=config.max_feed_override)
+    motion.send(MotCommand.SET_WORLD_HOME, pos=config.world_home)
+    arc_blend(motion, config.arc_blend)
+    inhibit = int(config.no_probe_jog_error) | int(config.no_probe_home_error) << 1
+    motion.send(MotCommand.SET_PROBE_ERR_INHIBIT, flags=inhibit)
     for number, joint in enumerate(config.joints):
         _send_joint(motion, number, joint)
     for axis, values in config.axes.items():
         _send_axis(motion, axis, values)
+    if config.position_file is not None:
+        positionfile.restore(config.position_file, motion, len(config.joints))
     for number, spindle in enumerate(config.spindles):
         motion.send(
             MotCommand.SET_SPINDLE_PARAMS,
@@ -28,16 +36,19 @@ def configure_motion(motion: MotionClient, config: MachineConfig) -> None:
         )
 
 
-def _send_path(motion: MotionClient, config: MachineConfig) -> None:
+def path_limits(motion: MotionClient, config: MachineConfig) -> None:
+    """Velocity, acceleration and jerk along the path."""
     motion.send(MotCommand.SET_VEL, vel=config.default_velocity, ini_maxvel=config.max_velocity)
     motion.send(MotCommand.SET_VEL_LIMIT, vel=config.max_velocity)
     motion.send(MotCommand.SET_ACC, acc=min(config.default_acceleration, config.max_acceleration))
-    motion.send(MotCommand.SET_MAX_FEED_OVERRIDE, scale=config.max_feed_override)
-    motion.send(MotCommand.SET_WORLD_HOME, pos=config.world_home)
-    enable, fallback, depth, frequency = config.arc_blend
-    motion.send(MotCommand.SETUP_ARC_BLENDS, flags=enable | fallback << 1, turn=depth, vel=frequency)
-    inhibit = int(config.no_probe_jog_error) | int(config.no_probe_home_error) << 1
-    motion.send(MotCommand.SET_PROBE_ERR_INHIBIT, flags=inhibit)
+    motion.send(MotCommand.SET_JERK, jerk=config.max_jerk)
+    motion.send(MotCommand.SET_PLANNER_TYPE, mode=config.planner_type)
+
+
+def arc_blend(motion: MotionClient, blend: BlendConfig) -> None:
+    """How segments are joined."""
+    flags = int(blend.enable) | int(blend.fallback_enable) << 1
+    motion.send(MotCommand.SETUP_ARC_BLENDS, flags=flags, turn=blend.optimization_depth, vel=blend.ramp_freq)
 
 
 def _send_joint(motion: MotionClient, number: int, joint: JointConfig) -> None:
@@ -48,6 +59,7 @@ def _send_joint(motion: MotionClient, number: int, joint: JointConfig) -> None:
     send(MotCommand.SET_JOINT_MIN_FERROR, joint=number, minFerror=joint.min_ferror)
     send(MotCommand.SET_JOINT_VEL_LIMIT, joint=number, vel=joint.max_velocity)
     send(MotCommand.SET_JOINT_ACC_LIMIT, joint=number, acc=joint.max_acceleration)
+    send(MotCommand.SET_JOINT_JERK_LIMIT, joint=number, jerk=joint.max_jerk)
     send_homing(motion, number, joint)
     send_compensation(motion, number, joint.compensation)
     send(MotCommand.JOINT_ACTIVATE, joint=number)
@@ -78,9 +90,20 @@ def send_compensation(motion: MotionClient, number: int, rows: list[tuple[float,
 
 
 def _send_axis(motion: MotionClient, axis: int, values: AxisConfig) -> None:
-    """Limits of an axis; external offsets get their share of velocity and acceleration."""
-    share = values.offset_ratio
+    axis_limits(motion, axis, values)
+    axis_speeds(motion, axis, values)
+    motion.send(MotCommand.SET_AXIS_JERK_LIMIT, axis=axis, jerk=values.max_jerk)
+    motion.send(MotCommand.SET_AXIS_LOCKING_JOINT, axis=axis, joint=values.locking_joint)
+
+
+def axis_limits(motion: MotionClient, axis: int, values: AxisConfig) -> None:
+    """Where an axis may be."""
     motion.send(MotCommand.SET_AXIS_POSITION_LIMITS, axis=axis, minLimit=values.min_limit, maxLimit=values.max_limit)
+
+
+def axis_speeds(motion: MotionClient, axis: int, values: AxisConfig) -> None:
+    """How fast an axis may be; external offsets get their share of velocity and acceleration."""
+    share = values.offset_ratio
     motion.send(
         MotCommand.SET_AXIS_VEL_LIMIT,
         axis=axis,
@@ -93,4 +116,3 @@ def _send_axis(motion: MotionClient, axis: int, values: AxisConfig) -> None:
         acc=values.max_acceleration * (1 - share),
         ext_offset_acc=values.max_acceleration * share,
     )
-    motion.send(MotCommand.SET_AXIS_LOCKING_JOINT, axis=axis, joint=values.locking_joint)

@@ -22,6 +22,8 @@ class Supervisor:
         self._lost: set[str] = set()
         self._in_error = False
         self._all_homed = False
+        self.homing_ends = False
+        """Is the last joint homed, and motion about to change into teleop mode?"""
 
     def look(self) -> None:
         """React to whatever changed since the last cycle."""
@@ -72,8 +74,11 @@ class Supervisor:
         if task.mode is not Mode.MANUAL:
             return
         before, self._all_homed = self._all_homed, task.motion.all_homed
-        if self._all_homed and not before and task.state is State.ON:
-            task.motion.send(MotCommand.TELEOP)
+        self.homing_ends |= self._all_homed and not before
+        if self.homing_ends and task.motion.settled and not task.motion.homing:
+            self.homing_ends = False
+            if task.state is State.ON:
+                task.motion.send(MotCommand.TELEOP)
 
     def _seen(self) -> State:
         """The state as motion and io show it."""

@@ -16,6 +16,7 @@ from emctask import handlers, transitions
 from emctask.canon import TaskCanon
 from emctask.commandtable import REFUSALS, RULES, Refused, check
 from emctask.config import MachineConfig
+from emctask.inipins import IniPins
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from emctask.operatorline import OperatorLine
@@ -62,6 +63,7 @@ class Task:
         io: IoClient,
         status: StatusWriter,
         operator: OperatorLine,
+        pins: IniPins,
     ) -> None:
         self.config = config
         self.commands = commands
@@ -69,6 +71,7 @@ class Task:
         self.io = io
         self.status = status
         self.operator = operator
+        self.pins = pins
         self.running = True
         self.state = State.ESTOP
         self.mode = Mode.MANUAL
@@ -110,6 +113,7 @@ class Task:
         self.io.poll()
         self.operator.serial = self._serial_in_force()
         self.supervisor.look()
+        self.pins.look(self)
         self._read_commands()
         self._obey()
         self.operator.serial = self._serial_in_force()
@@ -132,6 +136,7 @@ class Task:
             or not self.sequencer.idle
             or not self.io.done
             or not self.at_rest
+            or self.supervisor.homing_ends
         )
 
     @property
@@ -217,6 +222,6 @@ class Task:
         self.operator.display(text)
 
     def close(self) -> None:
-        """Close every channel."""
-        for part in (self.commands, self.motion, self.io, self.status, self.operator):
+        """Close every channel, remove the pins."""
+        for part in (self.commands, self.motion, self.io, self.status, self.operator, self.pins):
             part.close()

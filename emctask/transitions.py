@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from emctask import positionfile
 from emctask.commandtable import Refused
 from nml.emc import EMC_AUX_ESTOP_OFF, EMC_AUX_ESTOP_ON, EMC_LUBE_OFF, EMC_LUBE_ON, EMC_TOOL_ABORT
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
@@ -98,6 +99,9 @@ def shut_down(task: Task) -> None:
     """Task ends: the machine stops and is switched off, the parameters are on the disk."""
     emergency_stop(task, Reason.TASK_STATE_ESTOP)
     task.motion.send(MotCommand.SET_HEARTBEAT_TIMEOUT, timeout=0.0)
+    if task.config.position_file is not None:
+        task.motion.poll()
+        positionfile.save(task.config.position_file, task.motion, len(task.config.joints))
     task.plan.close()
     task.runner.saver.close()
 

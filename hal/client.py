@@ -35,10 +35,12 @@ class HostClient:
         self.hal = hal
         self._socket: socket.socket | None = None
         self._rest = b""
+        self._started: int | None = None
 
-    def start(self) -> None:
-        """Start the host where there is none; the first request then waits until it answers."""
+    def start(self) -> int | None:
+        """Start the host where there is none, as this process; the first request then waits until it answers."""
         self._connect(start=True)
+        return self._started
 
     def loadrt(self, name: str, words: list[str]) -> None:
         """Load a realtime module; the host is started if there is none."""
@@ -105,7 +107,7 @@ class HostClient:
         listener.listen(16)
         log = os.open(log_path(), os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
         # The host is neither of our terminal nor of our pipes: it outlives the command that started it.
-        os.posix_spawn(
+        self._started = os.posix_spawn(
             sys.executable,
             [sys.executable, "-m", "hal.host"],
             {**os.environ, "PYTHONPATH": _python_path()},

@@ -10,7 +10,7 @@ from pathlib import Path
 import nml
 from hal.session import find_hal_file
 from linuxcnc.options import Overrides
-from linuxcnc.programs import MODULES, SERVICES, Programs, python_module
+from linuxcnc.programs import MODULES, SERVICES, Command, Programs
 from nml import clock, namespace
 from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
@@ -48,19 +48,19 @@ class Configuration:
         self.nml_file = self._nml_file()
         self._hal_folders = self._existing(self.overrides.hal_folders)
         self.hal_files = self._hal_files()
+        self.shutdown = self._shutdown()
+        self.application_delay = self.ini.real("APPLICATIONS", "DELAY", 0.0, minimum=0.0)
         self.task = self.programs.command("TASK", "TASK", "milltask")
         self.io = self.programs.command("EMCIO", "EMCIO", "io")
         self.server = self._server()
         self.halui = self.programs.command("HAL", "HALUI", "halui") if self.ini.find("HAL", "HALUI") else None
 
-    def services(self) -> dict[str, list[str]]:
+    def services(self) -> dict[str, Command]:
         """Command lines of the programs beside the machine, by name."""
-        wanted = {section: module for section, module in SERVICES.items() if section in self.ini.sections()}
-        return {
-            section.lower(): [*python_module(module), "-ini", str(self.path)] for section, module in wanted.items()
-        }
+        wanted = {section.lower(): module for section, module in SERVICES.items() if section in self.ini.sections()}
+        return {name: self.programs.ours(name, module) for name, module in wanted.items()}
 
-    def display(self) -> list[str]:
+    def display(self) -> Command:
         """Command line of the display; only asked for when one is to be started."""
         if self.ini.find("DISPLAY", "DISPLAY") is None:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
@@ -81,7 +81,7 @@ class Configuration:
                 raise ConfigError(f"-H {folder}: there is no such folder", Place("<command line>"))
         return [folder.resolve() for folder in folders]
 
-    def _server(self) -> list[str] | None:
+    def _server(self) -> Command | None:
         """The NML server, where a buffer is to be reached from elsewhere.
 
         Side by side with another machine, in a namespace of its own, it may go without a port that is taken.
@@ -90,7 +90,7 @@ class Configuration:
         if not any(one.tcp or one.udp or one.stcp or one.serial_port for one in buffers):
             return None
         optional = ["--optional"] if namespace.VARIABLE in os.environ else []
-        return [*python_module(MODULES["linuxcncsvr"]), "-ini", str(self.path), *optional]
+        return self.programs.ours("linuxcncsvr", MODULES["linuxcncsvr"], *optional)
 
     def _nml_file(self) -> Path | None:
         name = self.ini.find("EMC", "NML_FILE")
@@ -109,15 +109,20 @@ class Configuration:
         names = self.ini.findall("HAL", "HALFILE")
         return [self._hal_file(name, number) for number, name in enumerate(names, 1)]
 
-    def _hal_file(self, name: str, number: int) -> HalFile:
-        """A HALFILE beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
+    def _hal_file(self, name: str, number: int, key: str = "HALFILE") -> HalFile:
+        """A HAL file beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
         words = shlex.split(name)
-        place = self.ini.place("HAL", "HALFILE", number)
+        place = self.ini.place("HAL", key, number)
         path = find_hal_file(words[0], [*self._hal_folders, self.folder])
         if path is None:
             folders = ", ".join(map(str, [*self._hal_folders, self.folder]))
-            raise ConfigError(f"[HAL]HALFILE = {name}: no such file in {folders} or the HAL library", place)
+            raise ConfigError(f"[HAL]{key} = {name}: no such file in {folders} or the HAL library", place)
         return HalFile(path, words[1:])
+
+    def _shutdown(self) -> HalFile | None:
+        """[HAL]SHUTDOWN, the HAL file that is executed when the machine is at rest and about to end."""
+        name = self.ini.find("HAL", "SHUTDOWN")
+        return self._hal_file(name, 1, "SHUTDOWN") if name else None
 
     def environment(self) -> dict[str, str]:
         """The environment of every process of this machine."""

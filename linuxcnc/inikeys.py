@@ -39,6 +39,7 @@ class Reader(Enum):
     LAUNCHER = "launcher"
     HALUI = "halui"
     NML = "NML server"
+    SHOP = "MQTT and OPC UA"
     HAL = "HAL files"
     SCREEN = "screens"
     NOBODY = "nobody"
@@ -78,7 +79,7 @@ class Key:
 
 
 TEXT, INTEGER, REAL, BOOLEAN, FILE, CHOICE = Kind
-TASK, IO, LANGUAGE, LAUNCHER, HALUI, NML, HAL, SCREEN, NOBODY = Reader
+TASK, IO, LANGUAGE, LAUNCHER, HALUI, NML, SHOP, HAL, SCREEN, NOBODY = Reader
 
 
 def _keys(section: str, *rows: tuple[str, Kind, Reader, str, dict[str, object]]) -> tuple[Key, ...]:
@@ -97,6 +98,7 @@ def _motion_limits(section: str, what: str) -> tuple[Key, ...]:
         ("MAX_LIMIT", REAL, TASK, f"highest position of the {what}", {"default": "1e99", "unit": "lu or au"}),
         ("MAX_VELOCITY", REAL, TASK, f"highest speed of the {what}", {"default": "1", "unit": "lu/s or au/s"}),
         ("MAX_ACCELERATION", REAL, TASK, f"highest acceleration of the {what}", {"default": "1", "unit": "lu/s² or au/s²"}),
+        ("MAX_JERK", REAL, TASK, f"highest jerk of the {what}; 0: no limit", {"default": "0", "unit": "lu/s³ or au/s³", "minimum": 0.0}),
     )
 
 
@@ -115,7 +117,7 @@ KEYS: tuple[Key, ...] = (
     ),
     *_keys(
         "DISPLAY",
-        ("DISPLAY", TEXT, LAUNCHER, "the screen: linuxcncrsh or any program, with its options", {"required": True}),
+        ("DISPLAY", TEXT, LAUNCHER, "the screen: web, linuxcncrsh or any program, with its options", {"required": True}),
         ("PROGRAM_PREFIX", FILE, TASK, "folder of programs and of M100 to M199", {"default": "nc_files"}),
         ("MAX_FEED_OVERRIDE", REAL, TASK, "highest feed override", {"default": "1", "minimum": 0.0}),
         ("CYCLE_TIME", REAL, SCREEN, "time between looks at the status", {"unit": "s or ms"}),
@@ -126,6 +128,8 @@ KEYS: tuple[Key, ...] = (
         ("DEFAULT_LINEAR_VELOCITY", REAL, SCREEN, "jog speed at first", {"unit": "lu/s", "minimum": 0.0}),
         ("MAX_LINEAR_VELOCITY", REAL, SCREEN, "highest jog speed", {"unit": "lu/s", "minimum": 0.0}),
         ("MIN_LINEAR_VELOCITY", REAL, SCREEN, "lowest jog speed", {"unit": "lu/s", "minimum": 0.0}),
+        ("MIN_VELOCITY", REAL, SCREEN, "lowest jog speed", {"unit": "lu/s", "minimum": 0.0}),
+        ("MACHINE_TYPE_HINT", CHOICE, SCREEN, "how to show the part", {"choices": ("mill", "lathe", "foam")}),
         ("DEFAULT_ANGULAR_VELOCITY", REAL, SCREEN, "jog speed of rotary axes at first", {"unit": "au/s", "minimum": 0.0}),
         ("MAX_ANGULAR_VELOCITY", REAL, SCREEN, "highest jog speed of rotary axes", {"unit": "au/s", "minimum": 0.0}),
         ("MIN_ANGULAR_VELOCITY", REAL, SCREEN, "lowest jog speed of rotary axes", {"unit": "au/s", "minimum": 0.0}),
@@ -136,7 +140,7 @@ KEYS: tuple[Key, ...] = (
     ),
     *_plain(
         "DISPLAY", TEXT, SCREEN, SCREENS_OWN,
-        "ARCDIVISION", "BACK_TOOL_LATHE", "CONFIRM_EXIT", "DEFAULT_SPINDLE_SPEED", "DRO_FORMAT_IN", "DRO_FORMAT_MM",
+        "ARCDIVISION", "BACK_TOOL_LATHE", "CONE_BASESIZE", "CONFIRM_EXIT", "DEFAULT_SPINDLE_SPEED", "DRO_FORMAT_IN", "DRO_FORMAT_MM",
         "EDITOR", "FOAM", "GEOMETRY", "GLADEVCP", "GRIDS", "HELP_FILE", "ICON", "INCREMENTS", "INTRO_GRAPHIC",
         "INTRO_TIME", "JOG_AXES", "LATHE", "LOG_FILE", "MDI_HISTORY_FILE", "OPEN_FILE",
         "PREFERENCE_FILE_PATH", "PREVIEW_TIMEOUT", "PYVCP", "PYVCP_POSITION", "SPINDLE_INCREMENT", "TITLE",
@@ -150,7 +154,7 @@ KEYS: tuple[Key, ...] = (
         "TASK",
         ("TASK", TEXT, LAUNCHER, "the task program", {"default": "milltask"}),
         ("CYCLE_TIME", REAL, TASK, "period of task; 0 or less: the shortest", {"default": "0.01", "unit": "s", "maximum": 1.0}),
-        ("MDI_QUEUED_COMMANDS", INTEGER, TASK, "MDI lines that may wait", {"default": "10", "minimum": 1}),
+        ("MDI_QUEUED_COMMANDS", INTEGER, TASK, "MDI lines that may wait", {"default": "10000", "minimum": 1}),
     ),
     *_keys(
         "RS274NGC",
@@ -198,7 +202,7 @@ KEYS: tuple[Key, ...] = (
         ("DB_PROGRAM", TEXT, IO, "program that keeps the tools, in place of a table", {}),
         ("RANDOM_TOOLCHANGER", BOOLEAN, IO, "tools change places in the magazine", {"default": "no"}),
         ("TOOL_CHANGE_WITH_SPINDLE_ON", BOOLEAN, LANGUAGE, "M6 leaves the spindle on", {"default": "no"}),
-        ("TOOL_CHANGE_POSITION", TEXT, NOBODY, LINUXCNC_ONLY, {"unit": "lu, au"}),
+        ("TOOL_CHANGE_POSITION", TEXT, TASK, "where tools are changed: X Y Z, X to C or X to W, machine coordinates", {"unit": "lu, au"}),
         ("TOOL_CHANGE_QUILL_UP", BOOLEAN, NOBODY, LINUXCNC_ONLY, {}),
         ("TOOL_CHANGE_AT_G30", BOOLEAN, NOBODY, LINUXCNC_ONLY, {}),
     ),
@@ -210,14 +214,44 @@ KEYS: tuple[Key, ...] = (
         ("HALUI", TEXT, LAUNCHER, "start halui", {}),
         ("POSTGUI_HALFILE", TEXT, SCREEN, "HAL file for when the screen has made its pins", {"repeated": True}),
         ("POSTGUI_HALCMD", TEXT, SCREEN, "HAL command for when the screen has made its pins", {"repeated": True}),
-        ("SHUTDOWN", TEXT, NOBODY, LINUXCNC_ONLY, {}),
+        ("SHUTDOWN", TEXT, LAUNCHER, "HAL file executed when the machine is at rest and about to end", {}),
     ),
     Key("HALUI", "MDI_COMMAND", TEXT, HALUI, "an MDI line for halui.mdi-command-NN", repeated=True),
     *_keys(
         "APPLICATIONS",
-        ("APP", TEXT, NOBODY, LINUXCNC_ONLY, {"repeated": True}),
-        ("DELAY", REAL, NOBODY, LINUXCNC_ONLY, {"unit": "s"}),
+        ("APP", TEXT, LAUNCHER, "program with arguments that runs beside the machine", {"repeated": True}),
+        ("DELAY", REAL, LAUNCHER, "time between the machine's being ready and their start", {"default": "0", "unit": "s", "minimum": 0.0}),
     ),
+    *_keys(
+        "MQTT",
+        ("BROKER", TEXT, SHOP, "host of the broker that is told what the machine does; the section needs it", {}),
+        ("PORT", INTEGER, SHOP, "port of the broker; 8883 with TLS", {"default": "1883", "minimum": 1, "maximum": 65535}),
+        ("TOPIC", TEXT, SHOP, "what topics begin with", {"default": "linuxcnc/[EMC]MACHINE"}),
+        ("USER", TEXT, SHOP, "name to log in with", {}),
+        ("PASSWORD_FILE", FILE, SHOP, "file with the password", {}),
+        ("TLS", BOOLEAN, SHOP, "encrypt the connection", {"default": "no"}),
+        ("CA_FILE", FILE, SHOP, "certificates to trust; without it the system's", {}),
+        ("CYCLE_TIME", REAL, SHOP, "shortest time between two values", {"default": "0.2", "unit": "s", "minimum": 0.01, "maximum": 3600.0}),
+    ),
+    *_keys(
+        "OPCUA",
+        ("ENDPOINT", TEXT, SHOP, "address of the server", {"default": "opc.tcp://127.0.0.1:4840/"}),
+        ("CERTIFICATE", FILE, SHOP, "the server's certificate; connections are encrypted then", {}),
+        ("KEY", FILE, SHOP, "the certificate's key", {}),
+        ("CYCLE_TIME", REAL, SHOP, "shortest time between two values", {"default": "0.2", "unit": "s", "minimum": 0.01, "maximum": 3600.0}),
+    ),
+    *_keys(
+        "WEB",
+        ("HOST", TEXT, SCREEN, "address that the web display listens on", {"default": "127.0.0.1"}),
+        ("PORT", INTEGER, SCREEN, "port of the web display", {"minimum": 0, "maximum": 65535}),
+        ("NAMES", TEXT, SCREEN, "names by which browsers may ask for it", {}),
+        ("TOKEN_FILE", FILE, SCREEN, "file with the token that browsers must show", {}),
+        ("TLS_CERTIFICATE", FILE, SCREEN, "certificate; connections are encrypted then", {}),
+        ("TLS_KEY", FILE, SCREEN, "the certificate's key", {}),
+        ("HAL_WRITE", BOOLEAN, SCREEN, "let browsers set HAL pins", {"default": "no"}),
+        ("UPLOAD_LIMIT", REAL, SCREEN, "largest program that a browser may send", {"unit": "MB", "minimum": 0.0}),
+    ),
+    Key("FILTER", "PROGRAM_EXTENSION", TEXT, SCREEN, "extensions of programs, and what they are, for file lists", repeated=True),
     Key("NML", "LISTEN", TEXT, NML, "address that the NML server listens on", "127.0.0.1"),
     *_keys(
         "KINS",
@@ -243,9 +277,11 @@ KEYS: tuple[Key, ...] = (
         ("ARC_BLEND_OPTIMIZATION_DEPTH", INTEGER, TASK, "segments to look ahead", {"default": "50", "minimum": 1}),
         ("ARC_BLEND_RAMP_FREQ", REAL, TASK, "shortest ramps", {"default": "100", "unit": "Hz", "minimum": 0.0}),
         ("TPMOD", TEXT, LAUNCHER, "the planner module; tpmod is the only one", {"default": "tpmod"}),
-        ("POSITION_FILE", FILE, NOBODY, LINUXCNC_ONLY, {}),
-        ("ARC_BLEND_GAP_CYCLES", REAL, NOBODY, LINUXCNC_ONLY, {}),
-        ("ARC_BLEND_KINK_RATIO", REAL, NOBODY, LINUXCNC_ONLY, {}),
+        ("POSITION_FILE", FILE, TASK, "file that keeps the joints' positions while the machine is off", {}),
+        ("PLANNER_TYPE", INTEGER, TASK, "0: trapezoids of velocity, 1: limited jerk", {"default": "0", "minimum": 0, "maximum": 1}),
+        ("MAX_LINEAR_JERK", REAL, TASK, "highest jerk of the path; 0: no limit", {"default": "0", "unit": "lu/s³", "minimum": 0.0}),
+        ("ARC_BLEND_GAP_CYCLES", REAL, TASK, "only shown as ini.traj_arc_blend_gap_cycles", {"default": "4"}),
+        ("ARC_BLEND_KINK_RATIO", REAL, TASK, "only shown as ini.traj_arc_blend_tangent_kink_ratio", {"default": "0.1"}),
         ("ARC_BLEND_SMOOTHING_THRESHOLD", REAL, NOBODY, LINUXCNC_ONLY, {}),
     ),
     *_plain(
@@ -305,11 +341,11 @@ KEYS: tuple[Key, ...] = (
         ("MIN_VELOCITY", REAL, TASK, "both lowest speeds at once", {"unit": "rpm", "minimum": 0.0}),
         ("HOME_SEARCH_VELOCITY", REAL, NOBODY, LINUXCNC_ONLY, {"unit": "rpm"}),
         ("HOME_SEQUENCE", INTEGER, NOBODY, LINUXCNC_ONLY, {}),
-        ("INCREMENT", REAL, NOBODY, LINUXCNC_ONLY, {"unit": "rpm"}),
+        ("INCREMENT", REAL, TASK, "how much faster or slower at an operator's order", {"default": "100", "unit": "rpm", "minimum": 0.0}),
     ),
 )  # fmt: skip
 
-OPEN_SECTIONS = frozenset({"EMC", "DISPLAY", "FILTER", "PYTHON", "HAL", "HALUI", "APPLICATIONS"})
+OPEN_SECTIONS = frozenset({"EMC", "DISPLAY", "FILTER", "PYTHON", "HAL", "HALUI", "APPLICATIONS", "MDI_COMMAND_LIST"})
 """Sections in which programs that are not ours look for keys of their own."""
 
 _NUMBERED = (

@@ -63,9 +63,13 @@ def _launch(options: argparse.Namespace) -> int:
     from nml.errors import PyemcError
 
     held: list[str] = []
+    said: list[str] = []
+    ini: Path | None = None
+    started = False
 
     def report(line: str) -> None:
         """Pass a line on; what task logs while we play the operator waits, for it may be the reason of the end."""
+        said.append(line)
         (held.append if options.run is not None and line.startswith("task: ") else to_stderr)(line)
 
     try:
@@ -82,6 +86,7 @@ def _launch(options: argparse.Namespace) -> int:
             signal.signal(number, _stop)
         with Machine(configuration, report, options.talk) as machine:
             machine.start()
+            started = True
             if options.run is not None:
                 print(run_program(machine.check, options.run.resolve()), flush=True)
                 return 0
@@ -90,6 +95,8 @@ def _launch(options: argparse.Namespace) -> int:
         held[:] = [line for line in held if line != f"task: {reason}"]
         if str(reason):
             held.append(str(reason))
+        if ini is not None and not started:
+            held += _other_findings(ini, [*said, *held])
         return 1
     finally:
         for line in held:
@@ -115,6 +122,14 @@ def _check(ini: Path) -> int:
     return 1 if found else 0
 
 
+def _other_findings(ini: Path, said: list[str]) -> list[str]:
+    """What a check finds in a configuration that did not start, but for the files that were named already."""
+    from linuxcnc.check import findings
+
+    named = {line.partition(":")[0] for line in said}
+    return [finding for finding in findings(ini) if finding.partition(":")[0] not in named]
+
+
 def _readable(path: Path) -> None:
     from nml.errors import ConfigError, Place
 
@@ -129,12 +144,12 @@ def _follow_display(machine: Machine) -> int:
     from linuxcnc.machine import MachineError
 
     display = machine.start_display()
-    while display.process.poll() is None:
+    while (code := display.process.poll()) is None:
         machine.check()
         clock.host_sleep(POLL)
-    if display.process.returncode < 0:
+    if code < 0:
         raise MachineError(display.farewell())
-    return display.process.returncode
+    return code
 
 
 def _stop(number: int, frame: FrameType | None) -> None:

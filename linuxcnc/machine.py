@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
 import signal
-import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 
 import linuxcnc
 from hal._shm import USER
@@ -19,47 +17,19 @@ from linuxcnc.guard import Guard
 from linuxcnc.halsetup import SetupSession, set_up
 from linuxcnc.instance import Instance, ProcessRecord
 from linuxcnc.options import Talk
+from linuxcnc.process import SIGNALS, Child, start
+from linuxcnc.programs import Command
 from nml import clock
 from nml.channel import Channel
 from nml.errors import PyemcError
 
 START_TIMEOUT = 15.0  # host seconds until a process must be ready
-LAST_WORDS = 1.0  # host seconds before its end in which a process tells why it ends
-END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # what asks the launcher to end
+END_SIGNALS = SIGNALS  # what asks the launcher to end
 POLL = 0.002  # host seconds between looks at a condition
 
 
 class MachineError(PyemcError):
     """The machine does not start, or lost a process; the text is for the user."""
-
-
-@dataclass(slots=True)
-class Child:
-    """A started process and the file that takes its output."""
-
-    name: str
-    process: subprocess.Popen[bytes]
-    log: Path
-    shown: int = 0  # bytes of the log that were passed on
-    said: float = float("-inf")  # host time of the last line that was passed on
-
-    def new_output(self) -> list[str]:
-        """Whole lines written since the last call."""
-        with self.log.open("rb") as file:
-            file.seek(self.shown)
-            data = file.read()
-        end = len(data) if self.process.poll() is not None else data.rfind(b"\n") + 1
-        self.shown += end
-        lines = [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
-        if lines:
-            self.said = clock.host_now()
-        return lines
-
-    def farewell(self) -> str:
-        """What is left to say about its end; nothing where it has just said why itself."""
-        if self.process.returncode > 0 and clock.host_now() - self.said < LAST_WORDS:
-            return ""
-        return f"{self.name} {_how_it_ended(self.process.returncode)}"
 
 
 class Machine:
@@ -72,7 +42,8 @@ class Machine:
         self.report = report
         self.talk = talk
         self.children: list[Child] = []
-        self._services: list[Child] = []
+        self._beside: list[Child] = []  # programs that the machine can do without
+        self._applications_due = math.inf  # host time
         self._nml_file = str(configuration.nml_file) if configuration.nml_file else None
         self._environment = configuration.environment()
         os.environ.update(self._environment)
@@ -84,6 +55,7 @@ class Machine:
         self._session = SetupSession(configuration.ini, configuration.overrides.keep_going)
         self._session.echo = talk >= Talk.COMMANDS
         self._host_record: ProcessRecord | None = None
+        self._hal_is_set_up = False
 
     def __enter__(self) -> Machine:
         return self
@@ -96,21 +68,24 @@ class Machine:
     def start(self) -> None:
         """Start everything but the display and wait until task is ready."""
         configuration = self.configuration
-        self._session.host.start()
-        self._spawn("io", configuration.io)
+        self._record_host(self._session.host.start())
         self._spawn("task", configuration.task)
+        self._spawn("io", configuration.io)
+        if configuration.halui is not None:
+            self._spawn("halui", configuration.halui)
         if configuration.server is not None:
             self._spawn("server", configuration.server)
         self.wait_until(self._host_runs, "the realtime host")
         self.wait_until(self._component_ready("iocontrol"), "io")
         if configuration.halui is not None:
-            self._spawn("halui", configuration.halui)
             self.wait_until(self._component_ready("halui"), "halui")
         set_up(self._session, configuration.ini, configuration.folder, configuration.hal_files)
+        self._hal_is_set_up = True
         self._record_user_components()
         status = Channel(self._nml_file, "emcStatus", "xemc")
         self.wait_until(lambda: status.peek() is not None, "task")
-        self._services = [self._spawn(name, command) for name, command in configuration.services().items()]
+        self._beside = [self._spawn(name, command) for name, command in configuration.services().items()]
+        self._applications_due = clock.host_now() + configuration.application_delay
 
     def start_display(self) -> Child:
         """Start the display that the INI names, in the foreground."""
@@ -118,35 +93,38 @@ class Machine:
         self.children.remove(display)
         return display
 
-    def _spawn(self, name: str, command: list[str], *, foreground: bool = False) -> Child:
-        """Start one process; in the background it gets a session of its own, so that Ctrl-C reaches only us."""
+    def _start_applications(self) -> None:
+        """Each [APPLICATIONS]APP; the machine goes on without one that is missing."""
+        self._applications_due = math.inf
+        for number in range(1, len(self.configuration.ini.findall("APPLICATIONS", "APP")) + 1):
+            try:
+                command = self.configuration.programs.application(number)
+                self._beside.append(self._spawn(f"application-{number}", command))
+            except (PyemcError, OSError) as reason:
+                self.report(f"{reason}; the machine goes on without it")
+
+    def _spawn(self, name: str, command: Command, *, foreground: bool = False) -> Child:
+        """Start one process of this machine."""
         if self.talk >= Talk.COMMANDS:
-            self.report(f"starting {name}: {shlex.join(command)}")
+            self.report(f"starting {name}: {shlex.join(command.words)}")
         elif self.talk >= Talk.STEPS:
             self.report(f"starting {name}")
-        log = self._instance.folder / f"{name}.log"
-        with log.open("wb") as output:
-            process = subprocess.Popen(
-                command,
-                env=self._environment,
-                cwd=self.configuration.folder,
-                stdin=None if foreground else subprocess.DEVNULL,
-                stdout=None if foreground else output,
-                stderr=None if foreground else output,
-                start_new_session=not foreground,
-            )
-        self._instance.add(ProcessRecord.of(process.pid, name))
-        child = Child(name, process, log)
+        child = start(name, command, self.configuration.folder, self._instance.folder, foreground=foreground)
+        self._instance.add(ProcessRecord.of(child.process.pid, name))
         self.children.append(child)
         return child
 
     def _host_runs(self) -> bool:
-        """Whether the realtime host has registered; then it is watched as the others are."""
+        """Whether the realtime host has registered."""
         pid, alive = self._session.hal.host_state()
         if alive and self._host_record is None:
+            self._record_host(pid)
+        return alive
+
+    def _record_host(self, pid: int | None) -> None:
+        if pid is not None:
             self._host_record = ProcessRecord.of(pid, "host")
             self._instance.add(self._host_record)
-        return alive
 
     def _component_ready(self, name: str) -> Callable[[], bool]:
         def ready() -> bool:
@@ -179,8 +157,10 @@ class Machine:
         self._guard.keep()
         if self._host_record is not None and not self._host_record.alive:
             raise MachineError(f"the realtime host (process {self._host_record.pid}) died")
+        if clock.host_now() >= self._applications_due:
+            self._start_applications()
         ended = [child for child in self.children if child.process.poll() is not None]
-        for child in [child for child in ended if child in self._services]:
+        for child in [child for child in ended if child in self._beside]:
             self._do_without(child)
             ended.remove(child)
         if not ended:
@@ -197,8 +177,10 @@ class Machine:
         """A program beside the machine has ended; the machine goes on."""
         for line in service.new_output():
             self.report(line)
-        self.report(f"{service.farewell() or f'{service.name} ended'}; the machine goes on without it")
+        if service.process.returncode:
+            self.report(f"{service.farewell() or f'{service.name} ended'}; the machine goes on without it")
         self.children.remove(service)
+        self._beside.remove(service)
 
     # --- stopping --------------------------------------------------------------------------------------------------
 
@@ -210,6 +192,7 @@ class Machine:
         problem = takedown.bring_to_rest(records, self._nml_file)
         if problem:
             self.report(problem)
+        self._shut_down_hal()
         for record in takedown.end_all(records):
             self.report(f"{record.name} (process {record.pid}) did not end and was killed")
         for child in self.children:
@@ -219,10 +202,16 @@ class Machine:
         self._instance.release()
 
 
-def _how_it_ended(code: int) -> str:
-    if code < 0:
-        return f"was killed by signal {-code}"
-    return f"ended with exit code {code}"
+    def _shut_down_hal(self) -> None:
+        """[HAL]SHUTDOWN, where the start came as far as the HAL files; a mistake in it is only reported."""
+        file = self.configuration.shutdown
+        if file is None or not self._hal_is_set_up:
+            return
+        try:
+            os.chdir(self.configuration.folder)
+            self._session.run_file(file.path, file.arguments)
+        except (PyemcError, OSError) as reason:
+            self.report(str(reason))
 
 
 def to_stderr(line: str) -> None:

@@ -7,6 +7,7 @@ import os
 import shlex
 import shutil
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 from nml.errors import ConfigError
@@ -27,6 +28,20 @@ MODULES = {
 SERVICES = {"MQTT": "gui.shop.mqtt", "OPCUA": "gui.shop.opcua"}
 
 
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A program and its arguments: a module of ours, or an executable by its path."""
+
+    name: str
+    arguments: list[str]
+    module: str | None = None
+
+    @property
+    def words(self) -> list[str]:
+        """As a person would type it."""
+        return [self.name, *self.arguments]
+
+
 class Programs:
     """Finds the programs of one INI file."""
 
@@ -35,20 +50,34 @@ class Programs:
         self._path = ini.file.resolve()
         self._folder = self._path.parent
 
-    def command(self, section: str, key: str, default: str) -> list[str]:
+    def ours(self, name: str, module: str, *arguments: str) -> Command:
+        """A program of ours, told the INI file."""
+        return Command(name, ["-ini", str(self._path), *arguments], module)
+
+    def command(self, section: str, key: str, default: str) -> Command:
         """The command line of the program that an entry names; ConfigError where there is none."""
         words = shlex.split(self._ini.find(section, key, default))
         module = MODULES.get(words[0]) if words else None
         if module is not None and importlib.util.find_spec(module) is not None:
-            return [*python_module(module), "-ini", str(self._path), *words[1:]]
+            return self.ours(words[0], module, *words[1:])
         executable = words and self._executable(words[0])
         if executable:
-            return [executable, "-ini", str(self._path), *words[1:]]
+            return Command(executable, ["-ini", str(self._path), *words[1:]])
         raise ConfigError(
             f"[{section}]{key} = {' '.join(words)}: no such program; "
             f"one of {', '.join(sorted(MODULES))} or an executable is allowed",
             self._ini.place(section, key),
         )
+
+    def application(self, number: int) -> Command:
+        """The command line of the n-th [APPLICATIONS]APP, counted from 1; ConfigError where there is none."""
+        text = self._ini.findall("APPLICATIONS", "APP")[number - 1]
+        words = shlex.split(text)
+        executable = self._executable(os.path.expanduser(words[0])) if words else None
+        if executable is None:
+            place = self._ini.place("APPLICATIONS", "APP", number)
+            raise ConfigError(f"[APPLICATIONS]APP = {text}: no such program", place)
+        return Command(executable, words[1:])
 
     def _executable(self, name: str) -> str | None:
         """Where a program is: a path relative to the INI file, or a name on the search path."""
@@ -60,8 +89,3 @@ class Programs:
         """The machine's own programs, ours beside this Python, then everybody's."""
         beside = str(Path(sys.executable).parent)
         return os.pathsep.join([str(self._folder / "bin"), beside, os.environ.get("PATH", os.defpath)])
-
-
-def python_module(module: str) -> list[str]:
-    """Command line that runs one of our modules; ``-P`` keeps the working folder out of the import path."""
-    return [sys.executable, "-P", "-m", module]

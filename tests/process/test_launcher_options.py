@@ -89,7 +89,7 @@ def test_what_is_started_is_said_when_asked_for(tmp_path):
 
 def test_debugging_shows_command_lines_and_hal_commands(tmp_path):
     errors = started(tmp_path, "-d", hal="newsig noticed bit\n").errors
-    assert "-m emctask -ini" in errors
+    assert "milltask -ini" in errors
     assert "newsig noticed bit" in errors
 
 

@@ -14,7 +14,7 @@ ALLOWED = {
     "hal": {"nml"},
     "rs274ngc": {"nml.errors", "nml.inifile", *GATEWAY},
     "emcmot": {"nml", "hal", "rs274ngc"},
-    "emctask": {"nml", "rs274ngc"},
+    "emctask": {"nml", "hal", "rs274ngc"},
     "emcio": {"nml", "hal"},
     "linuxcnc": {"nml", "hal"},
     "gui": {"linuxcnc", "hal", "nml.clock", "nml.namespace", "nml.errors", "nml.inifile", *GATEWAY},

@@ -6,6 +6,8 @@ import pytest
 
 from emctask.compensation import read_compensation
 from emctask.config import HOME_ABSOLUTE_ENCODER, HOME_NO_REHOME, HOME_USE_INDEX, UNLIMITED, read_config
+from emctask.positionfile import restore
+from nml.emc.emcmot import MotCommand
 from nml.errors import ConfigError
 from nml.inifile import IniFile
 
@@ -75,3 +77,30 @@ def test_a_compensation_file_that_does_not_rise_is_refused_with_its_line(tmp_pat
     path.write_text("0 0 0\n0 1 1\n")
     with pytest.raises(ConfigError, match=r"x\.comp:2: 0 does not rise"):
         read_compensation(path, 0)
+
+
+class Motion:
+    """Motion as far as the position file goes."""
+
+    def __init__(self):
+        self.sent = []
+
+    def send(self, command, *, joint, motor_offset):
+        assert command is MotCommand.SET_JOINT_MOTOR_OFFSET
+        self.sent.append((joint, motor_offset))
+
+
+def test_a_position_file_with_words_is_refused_with_its_line(tmp_path):
+    path = tmp_path / "position.txt"
+    path.write_text("1.5\nhere\n")
+    with pytest.raises(ConfigError, match=r"position\.txt:2: 'here': one number"):
+        restore(path, Motion(), 3)
+
+
+def test_a_position_file_comes_back_as_motor_offsets_of_the_joints_there_are(tmp_path):
+    path = tmp_path / "position.txt"
+    path.write_text("1.5\n-2.25\n0\n7\n")
+    motion = Motion()
+    restore(path, motion, 2)
+    restore(tmp_path / "none.txt", motion, 2)
+    assert motion.sent == [(0, -1.5), (1, 2.25)]

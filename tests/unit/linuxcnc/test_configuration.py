@@ -13,9 +13,8 @@ def configuration(folder, changes=None):
 
 def test_the_programs_are_modules_of_ours(tmp_path):
     found = configuration(tmp_path)
-    assert found.task[1:4] == ["-P", "-m", "emctask"]
-    assert found.io[3] == "emcio"
-    assert found.display()[3:] == ["gui.linuxcncrsh", "-ini", str(tmp_path / "mill_mm.ini"), "--port", "0"]
+    assert (found.task.module, found.io.module, found.display().module) == ("emctask", "emcio", "gui.linuxcncrsh")
+    assert found.display().words == ["linuxcncrsh", "-ini", str(tmp_path / "mill_mm.ini"), "--port", "0"]
     assert found.halui is None
 
 
@@ -25,7 +24,7 @@ def test_a_display_may_be_any_executable(tmp_path, name):
     screen.write_text("#!/bin/sh\n")
     screen.chmod(0o755)
     found = configuration(tmp_path, {"DISPLAY.DISPLAY": f"{name} --big"})
-    assert found.display() == [str(screen), "-ini", str(tmp_path / "mill_mm.ini"), "--big"]
+    assert found.display().words == [str(screen), "-ini", str(tmp_path / "mill_mm.ini"), "--big"]
 
 
 def test_hal_files_come_in_their_order(tmp_path):

@@ -1,0 +1,68 @@
+"""What the launcher starts beside the machine, executes at its end, and adds to the reason of a start that failed."""
+
+import pytest
+
+from tests.support.machine import Run, copy_mill, traces, wait_until
+
+pytestmark = pytest.mark.process
+
+SCREEN = "#!/bin/sh\nfor i in 1 2 3 4 5 6 7 8 9 10; do [ -e told ] && exit 0; sleep 0.2; done\nexit 9\n"
+"""A display that lives until the file ``told`` is there, at most 2 s."""
+
+
+def script(path, text):
+    path.write_text(text)
+    path.chmod(0o755)
+
+
+def started(tmp_path, section, screen=SCREEN):
+    """A finished run of the mill with one more section in its INI file."""
+    script(tmp_path / "screen", screen)
+    ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"})
+    ini.write_text(f"{ini.read_text()}{section}\n")
+    return Run(ini, speed=10.0)
+
+
+def test_applications_start_with_their_arguments_in_the_folder_of_the_ini_file(tmp_path):
+    script(tmp_path / "app", '#!/bin/sh\necho "$PWD $*" > told\n')
+    run = started(tmp_path, "[APPLICATIONS]\nAPP = ./app one 'two words'\nDELAY = 0.1")
+    assert run.finish() == 0, run.errors
+    assert (tmp_path / "told").read_text() == f"{tmp_path} one two words\n"
+    assert traces() == []
+
+
+def test_the_machine_runs_without_an_application_that_is_missing_or_fails(tmp_path):
+    script(tmp_path / "app", "#!/bin/sh\necho broken >&2\ntouch told\nexit 3\n")
+    run = started(tmp_path, "[APPLICATIONS]\nAPP = nosuchprogram -x\nAPP = app")
+    assert run.finish() == 0, run.errors
+    assert "[APPLICATIONS]APP = nosuchprogram -x: no such program; the machine goes on without it" in run.errors
+    assert "broken" in run.errors
+
+
+def test_applications_end_with_the_machine(tmp_path):
+    script(tmp_path / "app", "#!/bin/sh\ntouch told\nexec sleep 100\n")
+    run = started(tmp_path, "[APPLICATIONS]\nAPP = ./app")
+    assert run.finish() == 0, run.errors
+    assert traces() == []
+
+
+def test_the_shutdown_file_is_executed_when_the_machine_is_at_rest(tmp_path):
+    (tmp_path / "end.hal").write_text("loadusr -w ./end\n")
+    script(tmp_path / "end", "#!/bin/sh\nhalcmd getp iocontrol.0.user-enable-out > told\n")
+    ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"})
+    script(tmp_path / "screen", "#!/bin/sh\nexit 0\n")
+    ini.write_text(ini.read_text().replace("[HAL]\n", "[HAL]\nSHUTDOWN = end.hal\n"))
+    run = Run(ini, speed=10.0)
+    assert run.finish() == 0, run.errors
+    assert (tmp_path / "told").read_text() == "FALSE\n"
+    assert traces() == []
+
+
+def test_a_start_that_fails_in_a_hal_file_names_what_else_is_wrong(tmp_path):
+    ini = copy_mill(tmp_path, changes={"JOINT_0.HOME": "9999"}, hal="setp no.such-pin 1\n")
+    run = Run(ini, speed=10.0)
+    assert run.finish() == 1
+    reason, finding = run.errors.strip().splitlines()
+    assert reason.startswith("test.hal:1: ") or "test.hal:1: " in reason
+    assert "[JOINT_0]HOME = 9999 is outside the limits" in finding
+    wait_until(lambda: traces() == [], "everything is gone")
