@@ -70,7 +70,8 @@ function stateDisplay(app) {
       setText(detail, [v.config?.title || v.config?.machine, modeInWords(v), v.program?.name].filter(Boolean).join(" · "));
     },
   );
-  return h("div", { id: "state" }, line, detail);
+  const title = h("h1", { class: "visually-hidden" }, app.v.config?.title ?? "");
+  return h("div", { id: "state" }, title, line, detail);
 }
 
 /** Who has the controls; pressing it takes, asks for or releases them. @param {App} app */

@@ -6,7 +6,8 @@ import { _ } from "../core/i18n.js";
 const BOX = 230; // px, width of a component
 const PIN = 20;
 const HEAD = 26;
-const GAP = { x: 120, y: 18 };
+const GAP = { x: 120, y: 26 };
+const MARGIN = 60; // px, where curves that run back have room
 
 /**
  * @param {{nodes: {id: string, pins: any[]}[], edges: {from: string, to: string, signal: string, from_pin: string, to_pin: string}[]}} net
@@ -16,7 +17,7 @@ export function netGraph(net) {
   if (!net.edges.length) return h("p", { class: "muted" }, _("No nets match the filter."));
   const linked = new Set(net.edges.flatMap((edge) => [edge.from, edge.to]));
   const boxes = place(net.nodes.filter((node) => linked.has(node.id)), net.edges);
-  const width = Math.max(...[...boxes.values()].map((box) => box.x)) + BOX + 20;
+  const width = Math.max(...[...boxes.values()].map((box) => box.x)) + BOX + MARGIN;
   const height = Math.max(...[...boxes.values()].map((box) => box.y + box.height)) + 20;
   return h(
     "svg:svg",
@@ -43,7 +44,7 @@ function place(nodes, edges) {
     const y = bottoms[n] ?? 10;
     const height = HEAD + names.length * PIN + 6;
     bottoms[n] = y + height + GAP.y;
-    boxes.set(id, { id, x: 10 + n * (BOX + GAP.x), y, height, pins: new Map(names.map((name, k) => [name, y + HEAD + k * PIN + PIN / 2])) });
+    boxes.set(id, { id, x: MARGIN + n * (BOX + GAP.x), y, height, pins: new Map(names.map((name, k) => [name, y + HEAD + k * PIN + PIN / 2])) });
   }
   return boxes;
 }
@@ -74,7 +75,12 @@ function curve(edge, boxes) {
   if (!from || !to) return null;
   const [x1, y1, x2, y2] = [from.x + BOX, from.pins.get(edge.from_pin) ?? 0, to.x, to.pins.get(edge.to_pin) ?? 0];
   const bend = Math.max(40, Math.abs(x2 - x1) / 2);
-  return h("svg:path", { class: "edge", d: `M${x1} ${y1}C${x1 + bend} ${y1} ${x2 - bend} ${y2} ${x2} ${y2}` }, h("svg:title", null, `${edge.signal}: ${edge.from_pin} → ${edge.to_pin}`));
+  const below = Math.max(from.y + from.height, to.y + to.height) + 12;
+  const way =
+    x2 > x1
+      ? `M${x1} ${y1}C${x1 + bend} ${y1} ${x2 - bend} ${y2} ${x2} ${y2}`
+      : `M${x1} ${y1}C${x1 + 50} ${y1} ${x1 + 50} ${below} ${x1 - 20} ${below}L${x2 + 20} ${below}C${x2 - 50} ${below} ${x2 - 50} ${y2} ${x2} ${y2}`; // back, under the boxes
+  return h("svg:path", { class: "edge", d: way }, h("svg:title", null, `${edge.signal}: ${edge.from_pin} → ${edge.to_pin}`));
 }
 
 /** @param {Box} box */
