@@ -16,6 +16,8 @@ import signal
 import socket
 import sys
 import webbrowser
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import linuxcnc
@@ -23,11 +25,13 @@ from gui.web import settings as settings_module
 from gui.web.server import Server
 from gui.web.settings import Settings
 from gui.web.site import application
+from gui.web.wizard.server import WizardServer
 from nml import namespace
 from nml.errors import ConfigError, PyemcError
 from nml.inifile import IniFile
 
 PORT_FILE = "web.port"
+Maker = Callable[[Settings, Callable[[], None]], Server | WizardServer]
 DESKTOP = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
@@ -36,10 +40,13 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
+        if options.wizard:
+            asyncio.run(_serve(settings_module.of_wizard(options.port), _wizard_server, options.open))
+            return 0
         ini = IniFile(_ini_file(options))
         _use_nml_file(ini)
         settings = settings_module.read(ini, options.host, options.port)
-        asyncio.run(_serve(ini, settings, options.open))
+        asyncio.run(_serve(settings, lambda settings, _: Server(ini, settings), options.open))
     except (PyemcError, linuxcnc.error, OSError) as reason:
         print(f"linuxcnc-web: {reason}", file=sys.stderr)
         return 1
@@ -63,7 +70,11 @@ def _use_nml_file(ini: IniFile) -> None:
         linuxcnc.nmlfile = str(nml_file)
 
 
-async def _serve(ini: IniFile, settings: Settings, browser: bool) -> None:
+def _wizard_server(settings: Settings, finish: Callable[[], None]) -> WizardServer:
+    return WizardServer(settings, settings.program_folder, finish)
+
+
+async def _serve(settings: Settings, make: Maker, browser: bool) -> None:
     """Serve until a signal asks for the end."""
     from aiohttp import web
 
@@ -71,16 +82,17 @@ async def _serve(ini: IniFile, settings: Settings, browser: bool) -> None:
     for number in (signal.SIGTERM, signal.SIGINT):
         asyncio.get_running_loop().add_signal_handler(number, over.set)
     tls = settings.tls()
-    server = Server(ini, settings)
+    listener = listening_socket(settings)
+    settings = replace(settings, port=listener.getsockname()[1])
+    server = make(settings, over.set)
     runner = web.AppRunner(application(server), access_log=None, handle_signals=False, shutdown_timeout=1.0)
     await runner.setup()
-    listener = listening_socket(settings)
     port_file = namespace.runtime_dir() / PORT_FILE
     try:
         await server.start()
         await web.SockSite(runner, listener, ssl_context=tls).start()
-        address = f"{settings.scheme}://{shown_host(settings.host)}:{listener.getsockname()[1]}/"
-        port_file.write_text(f"{listener.getsockname()[1]}\n")
+        address = f"{settings.scheme}://{shown_host(settings.host)}:{settings.port}/"
+        port_file.write_text(f"{settings.port}\n")
         print(f"the machine's page: {address}", flush=True)
         if browser and any(os.environ.get(name) for name in DESKTOP):
             await asyncio.to_thread(webbrowser.open, address)
@@ -121,6 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("-ini", metavar="FILE", help="INI file of the machine")
     parser.add_argument("--port", type=int, metavar="N", help="port; 0: any free one (default [WEB]PORT or 8080)")
     parser.add_argument("--host", metavar="ADDRESS", help="address to listen on (default [WEB]HOST or 127.0.0.1)")
+    parser.add_argument("--wizard", action="store_true", help="make a new configuration; no INI file is needed")
     parser.add_argument("--no-browser", dest="open", action="store_false", help="do not open a browser on the desktop")
     return parser
 

@@ -122,5 +122,7 @@ async def perform(caller: Caller, name: Any, given: Any) -> Any:
     row = METHODS.get(name) if isinstance(name, str) else None
     if row is None:
         raise CallError("method", "there is no method {method}", method=str(name)[:100])
+    if name.startswith("wizard.") != caller.server.config["wizard"] and not name.startswith("control."):
+        raise CallError("state", "no machine runs" if caller.server.config["wizard"] else "a machine runs")
     caller.server.hub.require(caller.client, row.right)
     return await row.function(caller, **row.arguments(given))

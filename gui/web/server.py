@@ -44,7 +44,7 @@ class Server:
     def __init__(self, ini: IniFile, settings: Settings) -> None:
         self.ini = ini
         self.settings = settings
-        self.config = displaykeys.configuration(ini, settings)
+        self.config = displaykeys.configuration(ini, settings) | {"wizard": False}
         self.access = Access(settings)
         self.state = State()
         self.messages = Messages(settings.log_file, self._show_message)
@@ -86,7 +86,6 @@ class Server:
             "jog_heartbeat": {"interval": BEAT_INTERVAL, "timeout": BEAT_TIMEOUT},
             "manual_tool_change": self.toolchange.present,
             "version": linuxcnc.version,
-            "wizard": False,
         }
         await self._post_gui()
         self.machine.start()

@@ -18,6 +18,7 @@ from nml.inifile import IniFile
 
 DEFAULT_PORT = 8080
 LOOPBACK = "127.0.0.1"
+PORT_VARIABLE = "PYEMC_WEB_PORT"  # the wizard hands its port on to the machine that it starts
 UPLOAD_LIMIT_MB = 256.0
 
 
@@ -58,6 +59,8 @@ class Settings:
 def read(ini: IniFile, host: str | None = None, port: int | None = None) -> Settings:
     """The settings of an INI file; the command line's host and port go before. ConfigError says what is wrong."""
     chosen_host = host or ini.find("WEB", "HOST", LOOPBACK)
+    if port is None and os.environ.get(PORT_VARIABLE, "").isdecimal():
+        port = int(os.environ[PORT_VARIABLE])
     chosen_port = port if port is not None else ini.integer("WEB", "PORT", DEFAULT_PORT, minimum=0, maximum=65535)
     settings = Settings(
         host=chosen_host,
@@ -76,6 +79,16 @@ def read(ini: IniFile, host: str | None = None, port: int | None = None) -> Sett
     )
     _refuse_an_open_door(settings)
     return settings
+
+
+def of_wizard(port: int | None) -> Settings:
+    """The wizard listens on this computer only and writes below ``~/linuxcnc/configs``."""
+    place = Path.home() / "linuxcnc" / "configs"
+    return Settings(
+        host=LOOPBACK, port=DEFAULT_PORT if port is None else port, port_is_wish=port is None, token_file=None,
+        certificate=None, key=None, names=(), hal_write=False, upload_limit=0, program_folder=place,
+        mdi_history_file=place, preference_file=place, log_file=None,
+    )  # fmt: skip
 
 
 def program_folder(ini: IniFile) -> Path:

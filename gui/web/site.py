@@ -18,6 +18,7 @@ from gui.web.access import Role
 from gui.web.calls import CallError
 from gui.web.client import Client
 from gui.web.server import Server
+from gui.web.wizard.server import WizardServer
 
 log = logging.getLogger(__name__)
 
@@ -25,26 +26,27 @@ PAGE = Path(__file__).with_name("page")
 MARK = ("X-Requested-With", "linuxcnc-web")
 HEARTBEAT = 10.0  # s between WebSocket pings
 STATUS_OF = {"file": 400, "argument": 400, "role": 403, "conflict": 409, "state": 409}
+SITE: web.AppKey[Any] = web.AppKey("site")  # whatever server: a machine's or the wizard's
 SERVER: web.AppKey[Server] = web.AppKey("server", Server)
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".html": "text/html"}
 
 
-def application(server: Server) -> web.Application:
-    """The site of one server."""
+def application(server: Server | WizardServer) -> web.Application:
+    """The site of one server: the page and its socket, and with a machine also programs and the NML gateway."""
     app = web.Application(middlewares=[_guard], client_max_size=server.settings.upload_limit + 1)
-    app[SERVER] = server
+    app[SITE] = server
     app.add_routes(
         [
             web.get("/", _page),
             web.get("/page/{path:.+}", _file),
             web.get("/catalogue/{language}.json", _catalogue),
-            web.get("/program", _program),
             web.get("/health", _health),
-            web.post("/upload", _upload),
             web.get("/ws", _websocket),
-            web.get("/nml", _gateway),
         ]
     )
+    if isinstance(server, Server):
+        app[SERVER] = server
+        app.add_routes([web.get("/program", _program), web.post("/upload", _upload), web.get("/nml", _gateway)])
     return app
 
 
@@ -56,7 +58,7 @@ def refusal(status: int, code: str, text: str) -> web.Response:
 @web.middleware
 async def _guard(request: web.Request, handler: Any) -> web.StreamResponse:
     """Foreign names, foreign pages and unforeseen failures end here; every answer gets the page's security headers."""
-    server = request.app[SERVER]
+    server = request.app[SITE]
     if not server.access.host_allowed(request.headers.get("Host")):
         return refusal(403, "host", "this server goes by another name; [WEB]NAMES adds names")
     try:
@@ -118,7 +120,7 @@ async def _catalogue(request: web.Request) -> web.Response:
 
 
 async def _health(request: web.Request) -> web.Response:
-    return web.json_response({"machine": request.app[SERVER].state.get("machine")})
+    return web.json_response({"machine": request.app[SITE].state.get("machine")})
 
 
 # --- programs --------------------------------------------------------------------------------------------------------
@@ -195,7 +197,7 @@ async def _receive(request: web.Request, server: Server, path: Path) -> int:
 
 
 async def _websocket(request: web.Request) -> web.StreamResponse:
-    server = request.app[SERVER]
+    server = request.app[SITE]
     if not server.access.origin_allowed(request.headers.get("Origin"), request.headers.get("Host")):
         return refusal(403, "origin", "only this server's own page may connect here")
     socket = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=frames.LONGEST_FRAME, compress=False)
