@@ -190,18 +190,22 @@ cdef enum:
 
 ctypedef struct Entry:
     const char* name
+    const char* refusal      # what the operator is told in another state than it needs; NULL: which it needs
     int needs
     Handler handler
 
 cdef Entry TABLE[MAX_CODE]
 cdef size_t NUMBERS[MAX_NUMBERS]   # where the doubles of a command are
 cdef int number_count = 0
-NAMES: list[bytes] = []            # keeps the texts that TABLE points to
+TEXTS: list[bytes] = []            # keeps the texts that TABLE points to
 COMMANDS: list[tuple[str, int, list[str], str]] = []
 
 
 cdef int refuse(Motion* m, int code, const char* why, int status) noexcept nogil:
-    snprintf(report(m), TEXT_SIZE, b"%s refused: %s", TABLE[code].name, why)
+    if status == MotCommandStatus_INVALID_COMMAND and TABLE[code].refusal != NULL:
+        snprintf(report(m), TEXT_SIZE, b"%s", TABLE[code].refusal)
+    else:
+        snprintf(report(m), TEXT_SIZE, b"%s refused: %s", TABLE[code].name, why)
     return status
 
 
@@ -301,12 +305,15 @@ cdef void run(Motion* m, const EMCMOT_COMMAND* c, size_t size) noexcept nogil:
     m.command_status = checked(m, c)
 
 
-cdef void command(int code, int needs, Handler handler, str doc) except *:
-    cdef bytes encoded
+cdef char* kept(str text) except? NULL:
+    TEXTS.append(text.encode())
+    return TEXTS[len(TEXTS) - 1]
+
+
+cdef void command(int code, int needs, Handler handler, str doc, str refusal=None) except *:
     name = MotCommand(code).name
-    encoded = name.encode()
-    NAMES.append(encoded)
-    TABLE[code].name = encoded
+    TABLE[code].name = kept(name)
+    TABLE[code].refusal = kept(refusal) if refusal else NULL
     TABLE[code].needs = needs
     TABLE[code].handler = handler
     COMMANDS.append((name, code, [text for bit, text in REQUIREMENT_TEXTS.items() if needs & bit], doc))
@@ -320,6 +327,8 @@ def _find_numbers():
                 NUMBERS[number_count] = offset
                 number_count += 1
 
+
+JOG_WHILE_OFF = "Can't jog joint when not enabled."
 
 _find_numbers()
 command(MotCommand_ABORT, 0, abort, "Stop all motion under its limits; drop queued moves, jogs and homing.")
@@ -350,14 +359,24 @@ command(
     MotCommand_OVERRIDE_LIMITS, 0, override_limits,
     "Ignore the closed limit switches until the next jog has ended; `joint` < 0: no more.",
 )
-command(MotCommand_SET_LINE, ENABLED | COORD | MOVE, set_line, "Queue a straight move.")
-command(MotCommand_SET_CIRCLE, ENABLED | COORD | MOVE, set_circle, "Queue an arc or helix.")
+command(
+    MotCommand_SET_LINE, ENABLED | COORD | MOVE, set_line, "Queue a straight move.",
+    "need to be enabled, in coord mode for linear move",
+)
+command(
+    MotCommand_SET_CIRCLE, ENABLED | COORD | MOVE, set_circle, "Queue an arc or helix.",
+    "need to be enabled, in coord mode for circular move",
+)
 command(MotCommand_SET_TELEOP_VECTOR, ENABLED, teleop_vector, "Jog all axes with the velocity vector `pos`.")
 command(MotCommand_CLEAR_PROBE_FLAGS, 0, clear_probe_flags, "Forget the last probe result.")
-command(MotCommand_PROBE, ENABLED | COORD | MOVE, probe, "Queue a straight probing move (G38.n).")
+command(
+    MotCommand_PROBE, ENABLED | COORD | MOVE, probe, "Queue a straight probing move (G38.n).",
+    "need to be enabled, in coord mode for probe move",
+)
 command(
     MotCommand_RIGID_TAP, ENABLED | COORD | MOVE, rigid_tap,
     "Queue a rigid tap with the spindle that the feed follows; `scale`: faster way out.",
+    "need to be enabled, in coord mode for rigid tap move",
 )
 command(MotCommand_SET_VEL, 0, set_parameters, "Speed of the moves that name none.")
 command(MotCommand_SET_VEL_LIMIT, 0, set_parameters, "Cap on the speed of the tool tip, 0: none.")
@@ -389,15 +408,23 @@ command(
 )
 command(MotCommand_ENABLE_WATCHDOG, 0, nothing, "For a hardware watchdog, where one is present; none is.")
 command(MotCommand_DISABLE_WATCHDOG, 0, nothing, "For a hardware watchdog, where one is present; none is.")
-command(MotCommand_JOG_CONT, ENABLED | JOINT_OR_AXIS, jog, "Jog with `vel` until stopped or at a limit.")
-command(MotCommand_JOG_INCR, ENABLED | JOINT_OR_AXIS, jog, "Jog by `offset`, which adds to a running increment.")
-command(MotCommand_JOG_ABS, ENABLED | JOINT_OR_AXIS, jog, "Jog to `offset`.")
+command(
+    MotCommand_JOG_CONT, ENABLED | JOINT_OR_AXIS, jog, "Jog with `vel` until stopped or at a limit.", JOG_WHILE_OFF
+)
+command(
+    MotCommand_JOG_INCR, ENABLED | JOINT_OR_AXIS, jog, "Jog by `offset`, which adds to a running increment.",
+    JOG_WHILE_OFF,
+)
+command(MotCommand_JOG_ABS, ENABLED | JOINT_OR_AXIS, jog, "Jog to `offset`.", JOG_WHILE_OFF)
 command(MotCommand_JOG_ABORT, JOINT_OR_AXIS, jog_abort, "Stop the jog of one joint or axis.")
 command(MotCommand_JOINT_ACTIVATE, JOINT, activate_joint, "The joint takes part in everything.")
 command(MotCommand_JOINT_DEACTIVATE, JOINT, deactivate_joint, "The joint takes part in nothing.")
 command(MotCommand_JOINT_ENABLE_AMPLIFIER, JOINT, enable_amplifier, "Set the joint's amp-enable-out, nothing else.")
 command(MotCommand_JOINT_DISABLE_AMPLIFIER, JOINT, disable_amplifier, "Clear the joint's amp-enable-out, nothing else.")
-command(MotCommand_JOINT_HOME, ENABLED | FREE | JOINT_OR_ALL, home, "Home a joint, or all in sequence (-1).")
+command(
+    MotCommand_JOINT_HOME, ENABLED | FREE | JOINT_OR_ALL, home, "Home a joint, or all in sequence (-1).",
+    "must be in joint mode to home",
+)
 command(
     MotCommand_JOINT_UNHOME, JOINT_OR_ALL, unhome,
     "Forget the home of a joint, of all (-1), of the volatile ones (-2).",
@@ -424,6 +451,6 @@ command(
 command(MotCommand_HEARTBEAT, 0, nothing, "Task is alive.")
 command(MotCommand_SET_UNITS, 0, set_parameters, "Millimetres per lu, for the feed pins.")
 command(MotCommand_SET_JERK, 0, set_parameters, "Cap on the jerk of the path, 0: none.")
-command(MotCommand_SET_PLANNER_TYPE, 0, set_parameters, "`mode` 0: speeds change at once to full acceleration; 1: under the jerk limits.")
+command(MotCommand_SET_PLANNER_TYPE, 0, set_parameters, "`mode` 0: acceleration may jump; 1: jerk limits hold.")
 command(MotCommand_SET_JOINT_JERK_LIMIT, JOINT, set_parameters, "Largest jerk, 0: none.")
 command(MotCommand_SET_AXIS_JERK_LIMIT, AXIS, set_parameters, "Largest jerk, 0: none.")

@@ -74,9 +74,9 @@ cdef void fault(Motion* m, int number, const char* what) noexcept nogil:
 cdef void watch_joint(Motion* m, int n) noexcept nogil:
     cdef Joint* joint = &m.joint[n]
     if joint.on_pos_limit and not m.override_limits & 2 << 2 * n:
-        fault(m, n, b"on positive limit switch error")
-    if joint.on_neg_limit and not m.override_limits & 1 << 2 * n:
-        fault(m, n, b"on negative limit switch error")
+        fault(m, n, b"on limit switch error")
+    elif joint.on_neg_limit and not m.override_limits & 1 << 2 * n:
+        fault(m, n, b"on limit switch error")
     if joint.faulted:
         fault(m, n, b"amplifier fault")
     if joint.ferrored:
@@ -122,8 +122,9 @@ cdef void watch_soft_limits(Motion* m) noexcept nogil:
             stop_all(m)
             m.coord_error = 1
             snprintf(
-                report(m, n), TEXT_SIZE, b"Exceeded %s soft limit on joint %d: %.4f",
-                b"positive" if joint.on_soft_pos else b"negative", n, joint.pos_cmd,
+                report(m, n), TEXT_SIZE, b"Exceeded %s soft limit (%.5f) on joint %d: it is at %.5f. Jog it back in joint mode.",
+                b"POSITIVE" if joint.on_soft_pos else b"NEGATIVE",
+                joint.max_limit if joint.on_soft_pos else joint.min_limit, n, joint.pos_cmd,
             )
         joint.soft_limit_reported = 1
 
@@ -180,7 +181,12 @@ cdef void move_free(Motion* m) noexcept nogil:
     m.current_vel = sqrt(speed2)
     m.requested_vel = 0.0
     m.distance_to_go = 0.0
-    world_from_joints(m)
+    if world_from_joints(m) == 0:
+        for n in range(MAX_AXES):
+            m.axis[n].pos_cmd = m.pos_cmd[n] - m.eoffset[n]
+    if m.tracking:
+        for n in range(m.num_joints):
+            m.joint[n].free.enabled = 0
 
 
 cdef void move_teleop(Motion* m) noexcept nogil:

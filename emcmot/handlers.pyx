@@ -56,6 +56,7 @@ from emcmot.layout import same_size
 
 same_size(__name__, "Motion", sizeof(Motion))
 
+cdef const char* JOG_INHIBITED = b"Cannot jog while jog-inhibit is active."
 cdef double SPINDLE_STEP = 100.0  # rpm, of SPINDLE_INCREASE and SPINDLE_DECREASE
 
 
@@ -209,13 +210,15 @@ cdef int jog(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     elif c.command == MotCommand_JOG_ABS:
         kind = JOG_ABSOLUTE
     if m.jog_inhibit or m.jog_stop or m.jog_stop_immediate:
-        return refuse(m, b"can't jog: jogging is inhibited by a HAL pin")
+        return refuse(m, JOG_INHIBITED)
     if c.vel == 0.0:
         snprintf(report(m), TEXT_SIZE, b"can't jog at speed 0")
         return MotCommandStatus_INVALID_PARAMS
     if homing_is_active(m):
-        return refuse(m, b"can't jog while a joint is homing")
+        return refuse(m, b"Can't jog any joints while homing.")
     if c.mode:
+        if m.mode == MotionState_TELEOP:
+            return refuse(m, b"Mode is TELEOP, cannot jog joint")
         if m.mode != MotionState_FREE:
             return refuse(m, b"can't jog a joint: motion is not in joint mode")
         if not m.joint[c.joint].active:
@@ -244,7 +247,7 @@ cdef int teleop_vector(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.mode != MotionState_TELEOP:
         return refuse(m, b"can't move by a teleop vector: motion is not in teleop mode")
     if m.jog_inhibit or m.jog_stop or m.jog_stop_immediate:
-        return refuse(m, b"can't jog: jogging is inhibited by a HAL pin")
+        return refuse(m, JOG_INHIBITED)
     for n in range(MAX_AXES):
         if velocity[n] == 0.0:
             stop_axis_jog(&m.axis[n])
@@ -255,7 +258,8 @@ cdef int teleop_vector(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 cdef int home(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.homing_inhibit:
-        return refuse(m, b"can't home: homing is inhibited by motion.homing-inhibit")
+        snprintf(report(m), TEXT_SIZE, b"Homing denied by motion.homing-inhibit joint=%d", c.joint)
+        return MotCommandStatus_INVALID_COMMAND
     if m.home_step != SEQUENCE_IDLE:
         return refuse(m, b"can't home: a home sequence is running already")
     if c.joint < -1:
@@ -273,17 +277,22 @@ cdef int home(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 
 cdef int unhome(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    """One joint, all (-1), or those with VOLATILE_HOME (-2)."""
+    """One joint, all (-1), or those with VOLATILE_HOME (-2); an extra joint, led by its pin, only while off."""
     cdef int n
+    cdef int result = MotCommandStatus_OK
     if m.enabled and not resting(m):
         return refuse(m, b"can't unhome while the machine is moving or homing")
     if m.enabled and m.mode != MotionState_FREE:
         return refuse(m, b"must be in joint mode or disabled to unhome")
     for n in range(m.num_joints):
         if c.joint == n or c.joint == -1 or (c.joint == -2 and m.joint[n].home.is_volatile):
-            m.joint[n].home.homed = 0
+            if m.enabled and n >= m.num_joints - m.num_extra_joints:
+                snprintf(report(m, n), TEXT_SIZE, b"Cannot unhome extrajoint <%d> with motion enabled", n)
+                result = MotCommandStatus_INVALID_COMMAND
+            else:
+                m.joint[n].home.homed = 0
     update_homed(m)
-    return MotCommandStatus_OK
+    return result
 
 
 cdef int activate_joint(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:

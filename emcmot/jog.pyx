@@ -61,13 +61,15 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
     if joint.home.sequence < 0:
         snprintf(
             report(m, number), TEXT_SIZE,
-            b"Can't jog joint %d alone: its HOME_SEQUENCE %d is negative, it moves with others", number, joint.home.sequence,
+            b"Cannot jog joint %d because home_sequence is synchronized (%d)", number, joint.home.sequence,
         )
+        return -1
+    if locks_an_axis(m, number):
+        snprintf(report(m, number), TEXT_SIZE, b"Can't jog locking joint_num=%d", number)
         return -1
     if not m.override_limits and (joint.on_pos_limit if up else joint.on_neg_limit):
         snprintf(
-            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past its %s hard limit", number,
-            b"positive" if up else b"negative",
+            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past %s hard limit.", number, b"max" if up else b"min"
         )
         return -1
     jog_bounds(joint, &low, &high)
@@ -75,8 +77,8 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
     high = within(high, -1e300, joint.free.pos + FAR)
     if aim(&joint.free, kind, vel, offset, low, high, joint.kb_jog) != 0:
         snprintf(
-            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past its %s soft limit: it is at %.4f, limit %.4f",
-            number, b"positive" if up else b"negative", joint.free.pos, high if up else low,
+            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past %s soft limit. It is at %.4f, limit %.4f",
+            number, b"max" if up else b"min", joint.free.pos, high if up else low,
         )
         return -1
     joint.jog_vel = fabs(vel)
@@ -85,6 +87,43 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
     joint.wheel_jog = 0
     m.overriding_jog = m.override_limits != 0
     return 0
+
+
+cdef int locks_an_axis(Motion* m, int joint) noexcept nogil:
+    """Whether this joint is the locking indexer of an axis: it moves in programs only."""
+    cdef int n
+    for n in range(MAX_AXES):
+        if m.axis[n].locking_joint == joint:
+            return 1
+    return 0
+
+
+cdef int synchronised_joint(Motion* m, int number) noexcept nogil:
+    """A joint of this axis that is not homed and must home together with others; -1: none."""
+    cdef int n
+    for n in range(m.kins.joints):
+        if m.kins.axis_of_joint[n] == number and m.joint[n].home.sequence < 0 and not m.joint[n].home.homed:
+            return n
+    return -1
+
+
+cdef int may_jog_axis(Motion* m, int number) noexcept nogil:
+    """1, or 0 with a report of what speaks against it."""
+    cdef int joint = m.axis[number].locking_joint
+    if joint >= 0:
+        snprintf(
+            report(m), TEXT_SIZE, b"Cannot jog a locking indexer AXIS_%c,joint_num=%d", AXIS_NAMES[number], joint
+        )
+        return 0
+    joint = synchronised_joint(m, number)
+    if joint >= 0:
+        snprintf(
+            report(m, joint), TEXT_SIZE,
+            b"Homing is REQUIRED to jog requested coordinate because joint (%d) home_sequence is synchronized (%d)",
+            joint, m.joint[joint].home.sequence,
+        )
+        return 0
+    return 1
 
 
 cdef int jog_axis(Motion* m, int number, int kind, double vel, double offset) noexcept nogil:
@@ -97,10 +136,12 @@ cdef int jog_axis(Motion* m, int number, int kind, double vel, double offset) no
     if axis.vel_net <= 0.0 or axis.acc_net <= 0.0:
         snprintf(report(m), TEXT_SIZE, b"Can't jog axis %c: this machine has none", AXIS_NAMES[number])
         return -1
+    if not may_jog_axis(m, number):
+        return -1
     if aim(&axis.teleop, kind, vel, offset, low, high, axis.kb_jog) != 0:
         snprintf(
-            report(m), TEXT_SIZE, b"Can't jog axis %c further past its %s soft limit: it is at %.4f, limit %.4f",
-            AXIS_NAMES[number], b"positive" if up else b"negative", axis.teleop.pos, high if up else low,
+            report(m), TEXT_SIZE, b"Can't jog axis %c further past %s soft limit. It is at %.4f, limit %.4f",
+            AXIS_NAMES[number], b"max" if up else b"min", axis.teleop.pos, high if up else low,
         )
         return -1
     axis.jog_vel = fabs(vel)
@@ -154,7 +195,7 @@ cdef double fraction(double value) noexcept nogil:
     return value if 0.0 < value <= 1.0 else 1.0
 
 
-cdef void joint_wheel(Motion* m, Joint* joint, int homing) noexcept nogil:
+cdef void joint_wheel(Motion* m, Joint* joint, int number, int homing) noexcept nogil:
     cdef double low, high
     cdef int counts = joint.jog_counts - joint.wheel_counts
     joint.wheel_counts = joint.jog_counts
@@ -164,6 +205,12 @@ cdef void joint_wheel(Motion* m, Joint* joint, int homing) noexcept nogil:
         return
     if not m.override_limits and (joint.on_pos_limit or joint.on_neg_limit):
         return
+    if locks_an_axis(m, number):
+        if not joint.wheel_refused:
+            snprintf(report(m, number), TEXT_SIZE, b"Can't wheel jog locking joint_num=%d", number)
+        joint.wheel_refused = 1
+        return
+    joint.wheel_refused = 0
     jog_bounds(joint, &low, &high)
     joint.jog_vel = joint.vel_limit
     joint.free.vel_limit = joint.vel_limit
@@ -173,12 +220,16 @@ cdef void joint_wheel(Motion* m, Joint* joint, int homing) noexcept nogil:
     m.overriding_jog = m.override_limits != 0
 
 
-cdef void axis_wheel(Motion* m, Axis* axis) noexcept nogil:
+cdef void axis_wheel(Motion* m, Axis* axis, int number) noexcept nogil:
     cdef int counts = axis.jog_counts - axis.wheel_counts
     axis.wheel_counts = axis.jog_counts
+    axis.wheel_refused &= axis.jog_enable
     if counts == 0 or not axis.jog_enable or m.mode != MotionState_TELEOP or not m.enabled:
         return
-    if m.jog_inhibit or m.jog_stop or axis.kb_jog or axis.vel_net <= 0.0:
+    if m.jog_inhibit or m.jog_stop or axis.kb_jog or axis.vel_net <= 0.0 or axis.wheel_refused:
+        return
+    if not may_jog_axis(m, number):
+        axis.wheel_refused = 1
         return
     axis.jog_vel = axis.vel_net
     axis.teleop.vel_limit = axis.vel_net
@@ -200,12 +251,12 @@ cdef void jog_cycle(Motion* m) noexcept nogil:
         homing |= m.joint[n].home.homing
     for n in range(m.num_joints):
         joint = &m.joint[n]
-        joint_wheel(m, joint, homing)
+        joint_wheel(m, joint, n, homing)
         if not joint.home.homing and m.mode == MotionState_FREE:
             joint.free.vel_limit = min(joint.jog_vel, joint.vel_limit * scale)
     for n in range(MAX_AXES):
         axis = &m.axis[n]
-        axis_wheel(m, axis)
+        axis_wheel(m, axis, n)
         axis.teleop.vel_limit = min(axis.jog_vel, axis.vel_net * scale)
 
 

@@ -101,6 +101,7 @@ ctypedef struct Joint:
     int32_t on_soft_neg
     int soft_limit_reported
     int wheel_counts         # jog_counts of the period before
+    int wheel_refused        # it was said why the wheel does not move this joint
     double jog_vel           # speed that the running jog asks for
     Homing home
 
@@ -129,6 +130,7 @@ ctypedef struct Axis:
     int32_t kb_jog
     int32_t wheel_jog
     int wheel_counts
+    int wheel_refused
     double jog_vel
     FreePlanner eoffset
     double eoffset_request

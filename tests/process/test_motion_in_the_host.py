@@ -52,7 +52,7 @@ def test_a_refused_command_sends_its_reason(machine: MotionHost) -> None:
     machine.wait(lambda s: s.commandNumEcho >= serial, "command taken")
     error = machine.error.read()
     assert error is not None
-    assert error.text == "JOG_CONT refused: motion is not enabled"
+    assert error.text == "Can't jog joint when not enabled."
 
 
 def test_pins_follow_the_state(machine: MotionHost) -> None:

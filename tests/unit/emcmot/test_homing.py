@@ -130,7 +130,7 @@ def test_a_limit_switch_ends_homing_and_switches_off_where_limits_are_not_ignore
     m.add_switch(0, "pos", 70.0, 120.0)
     homing(m, search=30.0, latch=1.0)
     errors = home(m)
-    assert "joint 0 on positive limit switch error" in errors
+    assert "joint 0 on limit switch error" in errors
     assert not m["joint.0.homed"]
     assert m.status.motion_state == 0
     assert within_limits(m)
@@ -269,7 +269,7 @@ def test_homing_is_refused_while_inhibited_and_outside_of_joint_mode() -> None:
     m["motion.homing-inhibit"] = 1
     assert "homing-inhibit" in home(m)[0]
     m = mill("coord")
-    assert home(m) == ["JOINT_HOME refused: motion is not in joint mode"]
+    assert home(m) == ["must be in joint mode to home"]
 
 
 def test_a_jog_is_refused_while_a_joint_is_homing_and_homing_goes_on() -> None:
@@ -279,7 +279,7 @@ def test_a_jog_is_refused_while_a_joint_is_homing_and_homing_goes_on() -> None:
     m.step(100)
     for joint in (0, 1):
         assert m.send(C.JOG_CONT, joint=joint, mode=1, vel=-20.0) != 0
-        assert m.errors() == ["can't jog while a joint is homing"]
+        assert m.errors() == ["Can't jog any joints while homing."]
     m.run_until_rest()
     assert m["joint.0.pos-cmd"] == 20.0
     assert m["joint.0.homed"]
@@ -319,6 +319,13 @@ def test_an_extra_joint_is_homed_and_then_led_by_its_pin() -> None:
     m.loopback = False
     m.step(5)
     assert m.status.motion_state == 1, "its feedback does not count"
+    assert m.send(C.JOINT_UNHOME, joint=3) != 0
+    assert m.errors() == ["Cannot unhome extrajoint <3> with motion enabled"]
+    assert m["joint.3.homed"]
+    m.send(C.DISABLE)
+    m.step(5)
+    assert m.send(C.JOINT_UNHOME, joint=3) == 0
+    assert not m["joint.3.homed"]
 
 
 def test_unhome_forgets_one_all_or_the_volatile_joints() -> None:

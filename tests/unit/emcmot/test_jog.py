@@ -43,7 +43,7 @@ def test_a_jog_that_makes_a_limit_worse_is_refused_and_the_way_back_is_open(stat
     m.run_until_rest()
     assert jog(m, C.JOG_CONT, vel=80.0) != 0
     (error,) = m.errors()
-    assert "positive soft limit" in error
+    assert "further past max soft limit. It is at" in error
     assert jog(m, C.JOG_INCR, vel=10.0, offset=-3.0) == 0
     m.run_until_rest()
     assert position(m) == LIMIT - 3.0
@@ -185,7 +185,7 @@ def test_overridden_limits_last_until_the_next_jog_has_ended() -> None:
     m = mill("homed")
     m["joint.0.pos-lim-sw-in"] = 1
     m.step(100)
-    assert m.errors() == ["joint 0 on positive limit switch error"]
+    assert m.errors() == ["joint 0 on limit switch error"]
     m.send(C.OVERRIDE_LIMITS, joint=0)
     m.send(C.ENABLE)
     m.step(100)
@@ -200,7 +200,7 @@ def test_overridden_limits_last_until_the_next_jog_has_ended() -> None:
     assert m.status.overrideLimitMask == 0
     m["joint.0.pos-lim-sw-in"] = 1
     m.step()
-    assert m.errors() == ["joint 0 on positive limit switch error"]
+    assert m.errors() == ["joint 0 on limit switch error"]
 
 
 def test_an_override_can_be_taken_back() -> None:
@@ -213,4 +213,59 @@ def test_an_override_can_be_taken_back() -> None:
     m.errors()
     m.send(C.OVERRIDE_LIMITS, joint=-1)
     m.step()
-    assert m.errors() == ["joint 0 on positive limit switch error"]
+    assert m.errors() == ["joint 0 on limit switch error"]
+
+
+def indexer(state: str) -> Motion:
+    """A mill whose a axis is a locking indexer on joint 3."""
+    m = configure(Motion("xyza", unlock_joints_mask=8), axes=4)
+    m.send(C.SET_AXIS_LOCKING_JOINT, axis=3, joint=3)
+    return bring_to(m, state)
+
+
+def test_a_locking_indexer_is_not_jogged() -> None:
+    m = indexer("homed")
+    assert m.send(C.JOG_CONT, joint=3, mode=1, vel=5.0) != 0
+    assert m.errors() == ["Can't jog locking joint_num=3"]
+    m.send(C.TELEOP)
+    m.step(2)
+    assert m.send(C.JOG_INCR, axis=3, mode=0, vel=5.0, offset=1.0) != 0
+    assert m.errors() == ["Cannot jog a locking indexer AXIS_A,joint_num=3"]
+    assert m.send(C.JOG_INCR, axis=0, mode=0, vel=5.0, offset=1.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("state", "place", "complaint"),
+    [
+        ("homed", "joint.3", "Can't wheel jog locking joint_num=3"),
+        ("teleop", "axis.a", "Cannot jog a locking indexer AXIS_A,joint_num=3"),
+    ],
+)
+def test_the_wheel_of_a_locking_indexer_moves_nothing_and_says_so_once(state: str, place: str, complaint: str) -> None:
+    m = indexer(state)
+    m[f"{place}.jog-enable"] = 1
+    m[f"{place}.jog-scale"] = 1.0
+    for _ in range(20):
+        m[f"{place}.jog-counts"] += 1
+        m.step(5)
+    assert m.errors() == [complaint]
+    assert m["joint.3.pos-cmd"] == 0.0
+
+
+def test_an_axis_of_joints_that_home_together_is_jogged_only_when_they_are_homed() -> None:
+    m = configure(Motion("xyyz"))
+    for joint in (1, 2):
+        m.send(C.SET_JOINT_HOMING_PARAMS, joint=joint, home_sequence=-1)
+    bring_to(m, "free")
+    m.send(C.TELEOP)
+    m.step(2)
+    assert m.send(C.JOG_CONT, axis=1, mode=0, vel=5.0) != 0
+    [error] = m.errors()
+    assert error.startswith("Homing is REQUIRED to jog requested coordinate because joint (1)")
+    assert m.send(C.JOG_CONT, axis=0, mode=0, vel=5.0) == 0
+
+
+def test_a_joint_jog_in_teleop_mode_is_refused_by_name_of_the_mode() -> None:
+    m = mill("teleop")
+    assert m.send(C.JOG_CONT, joint=0, mode=1, vel=5.0) != 0
+    assert m.errors() == ["Mode is TELEOP, cannot jog joint"]

@@ -128,8 +128,8 @@ def test_commands_follow_the_hand_while_off_and_start_from_there() -> None:
     [
         ("motion.enable", 0, "motion stopped by enable input"),
         ("joint.1.amp-fault-in", 1, "joint 1 amplifier fault"),
-        ("joint.1.pos-lim-sw-in", 1, "joint 1 on positive limit switch error"),
-        ("joint.1.neg-lim-sw-in", 1, "joint 1 on negative limit switch error"),
+        ("joint.1.pos-lim-sw-in", 1, "joint 1 on limit switch error"),
+        ("joint.1.neg-lim-sw-in", 1, "joint 1 on limit switch error"),
         ("spindle.0.amp-fault-in", 1, "spindle 0 amplifier fault"),
     ],
 )

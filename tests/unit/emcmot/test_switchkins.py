@@ -12,7 +12,8 @@ from tests.support.mill import bring_to, configure, line
 
 def table_mill(state: str) -> Motion:
     """A mill with a table turned by 90 degrees, at x 10, y 20."""
-    m = bring_to(configure(Motion(kinematics=xyzac_trt_kins.create(sparm="identityfirst")), limit=400.0, axes=9), "homed")
+    kins = xyzac_trt_kins.create(sparm="identityfirst")
+    m = bring_to(configure(Motion(kinematics=kins), limit=400.0, axes=9), "homed")
     for joint, where in ((0, 10.0), (1, 20.0), (4, 90.0)):
         m.send(C.JOG_ABS, joint=joint, mode=1, vel=50.0, offset=where)
     m.run_until_rest()
