@@ -371,8 +371,8 @@ def unecho(session: Session, args: list[str]) -> None:
 
 @command("print", most=1, usage="print [MESSAGE]")
 def print_(session: Session, args: list[str]) -> None:
-    """Print file name, line and a message."""
-    print(f"{session.place}: HALCMD MSG: {args[0] if args else '(null)'}")
+    """Print file name, line and a message on standard error."""
+    print(f"{session.place}: HALCMD MSG: {args[0] if args else '(null)'}", file=sys.stderr)
 
 
 @command("debug", least=1, usage="debug LEVEL")

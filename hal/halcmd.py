@@ -74,7 +74,7 @@ def run(options: Options, session: Session) -> int:
         else:
             return 0 if session.run_words(options.rest) else FAILED
     except Quit:
-        return FAILED if session.errors and not session.keep_going else 0
+        return FAILED if session.errors else 0
     return 0
 
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hal import basic_sim, commands
-from nml.errors import HalError, PyemcError
+from nml.errors import HalError, Place, PyemcError
 
 if TYPE_CHECKING:
     from hal.session import Session
@@ -30,12 +31,16 @@ def _interpreter(session: Session, arguments: list[str]) -> Any:
         raise HalError("Tcl HAL files need Python's Tcl; on Debian and Ubuntu: sudo apt install python3-tk") from None
     tcl = tkinter.Tcl()
 
+    def split(word: str) -> list[str]:
+        """A value of several words, such as ``$::KINS(KINEMATICS)``, is a list with one element: its words."""
+        return " ".join(tcl.splitlist(word)).split() if word.startswith("{") else [word]
+
     def call(*words: str) -> tuple[str, str]:
         """(Tcl's return code, output or reason): a Python exception would reach Tcl without its text."""
         out = io.StringIO()
         try:
             with contextlib.redirect_stdout(out):
-                session.execute([str(word) for word in words])
+                session.execute([part for word in words for part in split(str(word))])
         except PyemcError as error:
             return "error", str(error)
         return "ok", out.getvalue().rstrip("\n")
@@ -60,7 +65,7 @@ def _interpreter(session: Session, arguments: list[str]) -> Any:
 
 
 def run_tcl(session: Session, path: Path, arguments: list[str]) -> None:
-    """Run a Tcl HAL file; HalError with Tcl's reason."""
+    """Run a Tcl HAL file; HalError with Tcl's reason, the session's place with the line."""
     if path.resolve() == HALLIB / "basic_sim.tcl":
         basic_sim.run(session, arguments)
         return
@@ -69,10 +74,15 @@ def run_tcl(session: Session, path: Path, arguments: list[str]) -> None:
     tcl = _interpreter(session, arguments)
     from tkinter import TclError
 
+    outer = session.place
+    session.place = Place(str(path))
     try:
         tcl.eval(f"source {{{path}}}")
     except TclError as error:
-        raise HalError(f"{path}: {error}") from None
+        line = re.search(r'\(file "[^"]*" line (\d+)\)', tcl.eval("set ::errorInfo"))
+        session.place = Place(str(path), int(line[1]) if line else 0)
+        raise HalError(str(error).strip() or "the script ended with an error") from None
+    session.place = outer
 
 
 def run_file(session: Session, path: str, arguments: list[str]) -> int:

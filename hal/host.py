@@ -2,8 +2,9 @@
 
 It is started by ``hal.client`` with a listening socket as file descriptor 3, one for each namespace, and runs until it
 is told to end (``quit``) or its segment is gone. A request is a line of JSON, ``{"do": NAME, "args": [...]}``; the
-answer is ``{"ok": result}`` or ``{"error": text, "errno": n}``, with ``"notes": [...]`` for the user. It also removes
-user components whose process has died, and says so in its log.
+answer is ``{"ok": result}`` or ``{"error": text, "errno": n}``, with ``"notes": [...]`` for the user: what the system
+refused, what realtime functions said, late threads, components that died. Each is in the log too, at once; ``notes``
+only asks for them.
 """
 
 from __future__ import annotations
@@ -18,13 +19,15 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from hal._messages import hear
 from hal.client import LISTENER_FD
 from hal.process import own_identity
 from hal.realtime import Host
 from nml.errors import PyemcError
 from nml.namespace import shm_name
 
-SWEEP_SECONDS = 0.5  # host time between looks for dead components
+SWEEP_SECONDS = 0.5  # host time between looks for dead components and messages
+NOTES_KEPT = 100  # of those that nobody has asked for
 
 
 class Server:
@@ -44,11 +47,32 @@ class Server:
             "addf": self.host.add_function,
             "delf": self.host.remove_function,
             "quit": self.quit,
+            "notes": self.look,
         }
+        self._late: set[str] = set()  # threads whose first overrun has been told
 
     def quit(self) -> None:
         """End: stop the threads, unload everything."""
         self.running = False
+
+    def look(self) -> None:
+        """Gather what is to be told."""
+        for text in hear():
+            self._note(text)
+        for name in self.host.hal.reap():
+            self._note(f"HAL: component '{name}' died without leaving; removed")
+        for thread in self.host.hal.segment.threads() if self.host.realtime else []:
+            if thread.overruns and thread.name not in self._late:
+                self._late.add(thread.name)
+                self._note(
+                    f"Unexpected realtime delay: thread '{thread.name}' began more than its period of "
+                    f"{thread.period_ns} ns late. This is said once; latency-test shows what the machine can do"
+                )
+
+    def _note(self, text: str) -> None:
+        """For whoever asks next, and for the log."""
+        print(text, file=sys.stderr, flush=True)
+        self.host.notes = [*self.host.notes, text][-NOTES_KEPT:]
 
     def serve(self) -> None:
         """Until told to end; threads go on by themselves meanwhile."""
@@ -63,8 +87,7 @@ class Server:
                         self._lines[source.accept()[0]] = b""
                     elif source in self._lines:
                         self._receive(source)
-                for name in self.host.hal.reap():
-                    print(f"HAL: component '{name}' died without leaving; removed", file=sys.stderr, flush=True)
+                self.look()
         finally:
             self.host.hal.halt_threads()
             segment.host = (0, 0)
@@ -94,6 +117,7 @@ class Server:
             answer = {"error": str(error), "errno": getattr(error, "errno", -22)}
         except Exception as error:  # a module's mistake is the user's to read, and no reason for the host to end
             answer = {"error": f"{type(error).__name__}: {error}", "errno": -14}
+        self.look()
         answer["notes"], self.host.notes = self.host.notes, []
         return answer
 

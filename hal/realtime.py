@@ -66,10 +66,10 @@ class Component:
         self.keep(call)
         return self.function(name, call.code, call.arg)
 
-    @staticmethod
-    def _report(name: str, error: BaseException) -> None:
+    def _report(self, name: str, error: BaseException) -> None:
         text = "".join(traceback.format_exception(error))
         print(f"HAL: function '{name}' raised and is not called again:\n{text}", file=sys.stderr, flush=True)
+        self.host.notes.append(f"HAL: function '{name}' raised {type(error).__name__}: {error}; it is not called again")
 
     def keep(self, thing: Any) -> None:
         """Hold a reference until the component is unloaded."""
@@ -110,6 +110,11 @@ class Host:
         self._realtime = self._try_realtime()
 
     # ---- what the system allows ----
+
+    @property
+    def realtime(self) -> bool:
+        """Whether threads have realtime priority."""
+        return self._realtime
 
     def _try_realtime(self) -> bool:
         """Whether threads get realtime priority; one note says what was refused."""

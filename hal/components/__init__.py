@@ -13,13 +13,14 @@ from hal.components.declare import DECLARED
 
 GROUPS = (
     "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "control", "stepgen", "encoders",
-    "pulses", "codes", "geometry", "shaping", "counting",
+    "pulses", "codes", "geometry", "shaping", "counting", "offsets", "supervise", "spindles", "trials",
 )  # fmt: skip
 MODULES = {
     "threads": ("threads", "load"),
     "sampler": ("fifo", "load_sampler"),
     "streamer": ("fifo", "load_streamer"),
     "scope": ("fifo", "load_scope"),
+    "message": ("supervise", "load_message"),
 }
 
 

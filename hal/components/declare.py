@@ -39,7 +39,7 @@ DECLARED: dict[str, Declaration] = {}
 class Entry:
     """A pin or parameter; ``count`` of them where the name has a field: ``{}``, ``{:02}``, ``{letter}`` for A to E.
 
-    ``{type}`` in a name is the type's name, where that depends on the personality.
+    ``{type}`` in a name is the type's name, where that depends on the personality; ``{word}`` is one of ``words``.
     """
 
     is_pin: bool
@@ -49,6 +49,7 @@ class Entry:
     doc: str = ""
     default: Any = 0
     count: int = 1
+    words: tuple[str, ...] = ()
     personal: Callable[[int], int] | None = None  # how many of ``count`` exist for a personality
     type_of: Callable[[int], int] | None = None  # the type for a personality
     default_of: Callable[[int, int], Any] | None = None  # the default for a number and a personality
@@ -57,7 +58,8 @@ class Entry:
         """Name, type and default of each that exists for the personality."""
         type_ = self.type_of(personality) if self.type_of else self.type
         for i in range(self.personal(personality) if self.personal else self.count):
-            name = self.name.format(i, letter="ABCDE"[i % 5], type=TYPE_NAMES[type_])
+            word = self.words[i] if self.words else ""
+            name = self.name.format(i, letter="ABCDE"[i % 5], type=TYPE_NAMES[type_], word=word)
             yield name, type_, self.default_of(i, personality) if self.default_of else self.default
 
 

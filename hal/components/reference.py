@@ -21,7 +21,10 @@ LinuxCNC's manual pages. Every function also has a pin `.time` and parameters `.
 
 def placeholder(entry: Entry) -> str:
     """The entry's name with its numbers as `M`."""
-    return entry.name.replace("{letter}", "M").replace("{:02}", "MM").replace("{}", "M").replace("{type}", "TYPE")
+    name = entry.name
+    for field, shown in (("{letter}", "M"), ("{:02}", "MM"), ("{}", "M"), ("{type}", "TYPE"), ("{word}", "AXIS")):
+        name = name.replace(field, shown)
+    return name
 
 
 def instance(declaration: Declaration) -> str:

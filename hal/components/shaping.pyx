@@ -1,9 +1,10 @@
 """Components that shape a value on its way: second-order and Kalman filters, profiles, knobs, gears. See ``declare.py``."""
 
-from libc.math cimport M_PI, cos, fabs, pow, sin, sqrt
+from libc.math cimport M_PI, cos, fabs, pow, sin
 from libc.stdint cimport int32_t, uint8_t, uint32_t
 
 from hal.cell cimport hal_at as at, hal_pin
+from hal.components.profile cimport Profile, approach, slow_down
 
 from hal.components.declare import BIT, FLOAT, S32, U32, declare, param_rw, pin_in, pin_out
 
@@ -92,21 +93,13 @@ cdef struct SimpleTp:
     hal_pin target_pos, maxvel, maxaccel, enable, current_pos, current_vel, active
 
 cdef void simple_tp(SimpleTp* s, long period) noexcept nogil:
-    """Each period's velocity is the highest from which `maxaccel` still stops at the target."""
     cdef double dt = period * 1e-9
-    cdef double step = at(s.maxaccel).f * dt, limit = at(s.maxvel).f
-    cdef double rest = at(s.target_pos).f - at(s.current_pos).f
-    cdef double v = 0.0, near = step * dt * 1e-3
-    at(s.active).b = 0
-    if at(s.enable).b and fabs(rest) > near:
-        v = sqrt(2.0 * at(s.maxaccel).f * fabs(rest) + step * step) - step
-        v = -v if rest < 0.0 else v
-        at(s.active).b = 1
-    v = min(max(v, -limit), limit)
-    v = min(max(v, at(s.current_vel).f - step), at(s.current_vel).f + step)
-    at(s.active).b = at(s.active).b or v != 0.0
-    at(s.current_vel).f = v
-    at(s.current_pos).f += v * dt
+    cdef Profile way = Profile(at(s.current_pos).f, at(s.current_vel).f)
+    if at(s.enable).b:
+        at(s.active).b = approach(&way, at(s.target_pos).f, at(s.maxvel).f, at(s.maxaccel).f, dt)
+    else:
+        at(s.active).b = slow_down(&way, at(s.maxaccel).f, dt)
+    at(s.current_pos).f, at(s.current_vel).f = way.pos, way.vel
 
 declare("simple_tp", "Way of one axis to a target, with limits of velocity and acceleration", sizeof(SimpleTp), [
     pin_in(FLOAT, "target-pos"), pin_in(FLOAT, "maxvel", "per s"), pin_in(FLOAT, "maxaccel", "per s^2"),

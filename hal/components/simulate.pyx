@@ -89,3 +89,73 @@ declare("sim_matrix_kb", "Simulated matrix keyboard", sizeof(SimMatrixKb), [
     pin_out(U32, "out", "code of a key: 0xC0 pressed, 0x80 let go, + 8 row + column"),
     *(pin_in(BIT, f"button.c0{column}.r{{:02}}", count=8) for column in range(8)),
 ], {"": <size_t>&sim_matrix_kb})
+
+
+# ---- sim_axis_hardware ----
+
+cdef enum:
+    AXES = 8
+
+AXIS_NAMES = ("X", "X2", "Y", "Y2", "Z", "A", "U", "V")
+
+cdef struct SimAxisHardware:
+    hal_pin current_pos[AXES]
+    hal_pin homesw_pos[AXES]
+    hal_pin maxsw_upper[AXES]
+    hal_pin maxsw_lower[AXES]
+    hal_pin minsw_upper[AXES]
+    hal_pin minsw_lower[AXES]
+    hal_pin homesw_hyst[AXES]
+    hal_pin homing[AXES]
+    hal_pin homesw_out[AXES]
+    hal_pin maxsw_out[AXES]
+    hal_pin minsw_out[AXES]
+    hal_pin bothsw_out[AXES]
+    hal_pin maxsw_homesw_out[AXES]
+    hal_pin minsw_homesw_out[AXES]
+    hal_pin bothsw_homesw_out[AXES]
+    hal_pin homesw_all, limitsw_all, limitsw_homesw_all, limit_offset
+
+cdef void sim_axis_hardware(SimAxisHardware* s, long period) noexcept nogil:
+    """While an axis homes, the switches that it shares with its limits are its home switch."""
+    cdef double pos, offset = at(s.limit_offset).f
+    cdef bint home, high, low, limit, homing, any_home = False, any_limit = False
+    cdef int i
+    for i in range(AXES):
+        pos = at(s.current_pos[i]).f
+        homing = at(s.homing[i]).b != 0
+        home = fabs(pos - at(s.homesw_pos[i]).f) <= 0.5 * at(s.homesw_hyst[i]).f
+        high = at(s.maxsw_lower[i]).f + offset < pos < at(s.maxsw_upper[i]).f
+        low = at(s.minsw_lower[i]).f <= pos < at(s.minsw_upper[i]).f - offset
+        limit = (high or low) and not homing
+        at(s.homesw_out[i]).b = home
+        at(s.maxsw_out[i]).b = high
+        at(s.minsw_out[i]).b = low
+        at(s.bothsw_out[i]).b = limit
+        at(s.maxsw_homesw_out[i]).b = high or home
+        at(s.minsw_homesw_out[i]).b = low or home
+        at(s.bothsw_homesw_out[i]).b = limit or home
+        any_home = any_home or (home and homing)
+        any_limit = any_limit or limit
+    at(s.homesw_all).b = any_home
+    at(s.limitsw_all).b = any_limit
+    at(s.limitsw_homesw_all).b = any_limit or any_home
+
+def axis_in(int type_, str name, str doc = "", default = 0):
+    return pin_in(type_, "{word}" + name, doc, default, count=AXES, words=AXIS_NAMES)
+
+def axis_out(str name, str doc = ""):
+    return pin_out(BIT, "{word}" + name, doc, count=AXES, words=AXIS_NAMES)
+
+declare("sim_axis_hardware", "Simulated home and limit switches of the axes X, X2, Y, Y2, Z, A, U, V", sizeof(SimAxisHardware), [
+    axis_in(FLOAT, "current-pos", "mostly joint.N.motor-pos-fb"), axis_in(FLOAT, "homesw-pos", "middle of the home switch", 1.0),
+    axis_in(FLOAT, "maxsw-upper", "end of the upper limit switch"), axis_in(FLOAT, "maxsw-lower", "and its beginning"),
+    axis_in(FLOAT, "minsw-upper", "beginning of the lower limit switch"), axis_in(FLOAT, "minsw-lower", "and its end"),
+    axis_in(FLOAT, "homesw-hyst", "whole width of the home switch", 0.025), axis_in(BIT, "homing", "homing is in progress"),
+    axis_out("homesw-out", "home switch"), axis_out("maxsw-out", "upper limit switch"), axis_out("minsw-out", "lower limit switch"),
+    axis_out("bothsw-out", "a limit switch, unless homing"), axis_out("maxsw-homesw-out", "upper limit or home"),
+    axis_out("minsw-homesw-out", "lower limit or home"), axis_out("bothsw-homesw-out", "any of them; while homing, home only"),
+    pin_out(BIT, "homesw-all", "home switch of an axis that is homing"), pin_out(BIT, "limitsw-all", "a limit switch of any axis"),
+    pin_out(BIT, "limitsw-homesw-all", "one of these two"),
+    pin_in(FLOAT, "limit-offset", "how far behind the given position the limit switches begin", 0.01),
+], {"update": <size_t>&sim_axis_hardware})

@@ -171,3 +171,28 @@ def test_a_tcl_file_speaks_hal(own_namespace: str, tmp_path: Path) -> None:
     assert "and2" in done.stdout
     assert done.returncode == 1
     assert "parameter or pin 'nothing' not found" in done.stderr
+
+
+def test_what_realtime_functions_say_reaches_the_user(tmp_path: Path) -> None:
+    text = """loadrt threads name1=t period1=1000000
+loadrt message names=oil,air messages="Oil is low,No air"
+addf oil t
+addf air t
+start
+setp oil.trigger 1
+setp air.edge 0
+"""
+    said = script(tmp_path, text + "loadusr -w sleep 0.2\nstop\n").stderr.splitlines()
+    assert said.count("Oil is low") == 1
+    assert said.count("No air") == 1
+
+
+def test_a_component_that_died_is_told_to_the_next_user(tmp_path: Path) -> None:
+    program = tmp_path / "short.py"
+    program.write_text(
+        f"#!{sys.executable}\nimport hal, os, signal, time\nc = hal.component('short')\nc.ready()\ntime.sleep(1)\n"
+        "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    program.chmod(0o755)
+    done = script(tmp_path, f"loadrt threads\nloadusr -W {program}\nwaitusr short\nunloadrt threads\n")
+    assert "HAL: component 'short' died without leaving; removed" in done.stderr

@@ -70,7 +70,7 @@ def test_the_table_names_the_members_of_the_struct_in_order(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(DECLARED))
 def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
     declaration = DECLARED[name]
-    counts = {"mux_generic": "bb2,fs3", "charge_pump": "1"}.get(name, "2,1" if declaration.sizes else "2")
+    counts = {"mux_generic": "bb2,fs3", "charge_pump": "1", "thc": "1", "watchdog": "3"}.get(name, "2,1" if declaration.sizes else "2")
     words = [f"{declaration.counted_by}={counts}"]
     host.load("threads", ["name1=t", "period1=100000"])
     host.load(name, words)
@@ -86,7 +86,7 @@ def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
     host.unload(name)
     assert functions
     assert host.hal.segment.functs() == []
-    assert [pin.name for pin in host.hal.segment.items(0)] == ["t.time"]
+    assert [pin.name for pin in host.hal.segment.items(0)] == ["t.threadbeat", "t.time"]
 
 
 @pytest.mark.parametrize("name", sorted(DECLARED))

@@ -1,0 +1,3 @@
+"""Types of the realtime messages; the texts are in ``_messages.pyx``."""
+
+def hear() -> list[str]: ...
