@@ -10,7 +10,7 @@ from rs274ngc.comments cimport act_on_comment
 from rs274ngc.compensation cimport set_compensation
 from rs274ngc.context cimport context
 from rs274ngc.cycles cimport canned_cycle
-from rs274ngc.lathe cimport lathe_cycle
+from rs274ngc.lathe cimport check_lathe, lathe_cycle
 from rs274ngc.machine cimport (
     analog_output, check_orient, coolant, orient, output, overrides, program_end, program_stop, spindle, user_code,
     wait_input, check_wait, subprogram_end,
@@ -87,13 +87,13 @@ g(38.2, 1, "", probe, "Probe towards, error if nothing was found", NULL, AXES_NE
 g(38.3, 1, "", probe, "Probe towards", NULL, AXES_NEEDED)
 g(38.4, 1, "", probe, "Probe away, error if contact was not lost", NULL, AXES_NEEDED)
 g(38.5, 1, "", probe, "Probe away", NULL, AXES_NEEDED)
-g(70, 1, "DEPQ", lathe_cycle, "Lathe finishing cycle")
-g(71, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z")
-g(71.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, without pockets")
-g(71.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, after the first pocket")
-g(72, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X")
-g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets")
-g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket")
+g(70, 1, "DEPQ", lathe_cycle, "Lathe finishing cycle", check_lathe)
+g(71, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z", check_lathe)
+g(71.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, without pockets", check_lathe)
+g(71.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, after the first pocket", check_lathe)
+g(72, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X", check_lathe)
+g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets", check_lathe)
+g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket", check_lathe)
 g(73, 1, "LQR", canned_cycle, "Drilling cycle with chip breaking", NULL, AXES_NEEDED)
 g(74, 1, "LPR$", canned_cycle, "Left-hand tapping cycle", NULL, AXES_NEEDED)
 g(76, 1, "EHIJKLPQR$", threading_cycle, "Threading cycle", check_g76, AXES_NEEDED)
@@ -183,6 +183,7 @@ TABLE.append(("M100-M199", M_USER, "PQ", "The user's own program"))
 
 UNUSED = (
     (W_D, "D word with no G41, G41.1, G42, G42.1, G71, G71.1, G71.2 or G96 to use it"),
+    (W_DOLLAR, "$ (spindle selection) word with no M3, M4, M5, M19, M51, G33, G33.1, G76, G95, G96 or G97 to use it"),
     (W_E, "E word with no G70, G76, M66, M67 or M68 to use it"),
     (W_H, "H word with no G43 or G76 to use it"),
     (W_I, "I word with no G2, G3, G5, G5.1, G10, G33.1, G76, or G87 to use it"),
@@ -193,7 +194,6 @@ UNUSED = (
           " or M50 M51 M52 M53 M62 M63 M64 M65 M66 M98 or user M code to use it"),
     (W_Q, "Q word with no G5, G10, G64, G73, G76, G83, M19, M66, M67, M68 or user M code that uses it"),
     (W_R, "R word with no g code that uses it"),
-    (W_DOLLAR, "$ (spindle selection) word with no M3, M4, M5, M19, M51, G33, G33.1, G76, G95, G96 or G97 to use it"),
 )
 """What is said of a word that no code of the line uses, in the order in which the words are looked at."""
 

@@ -36,7 +36,7 @@ class Saved:
         self.feed_override, self.adaptive_feed, self.feed_hold = s.feed_override, s.adaptive_feed, s.feed_hold
         self.compensation = (s.comp_side, s.comp_radius, s.comp_orientation)
         self.tool = s.tool_offset
-        self.tool_offset_code = s.tool_offset_code
+        self.tool_offset_code, self.g43_active = s.tool_offset_code, s.g43_active
 
 
 cdef int context(State s, Block* b, int code) except -1:
@@ -78,7 +78,7 @@ cdef int restore(State s, saved) except -1:
     restore_compensation(s, &b, saved)
     if s.tool_offset != saved.tool:
         shift_tool_offset(s, saved.tool)
-        s.tool_offset_code = saved.tool_offset_code
+        s.tool_offset_code, s.g43_active = saved.tool_offset_code, saved.g43_active
     if s.origin_index != saved.origin_index:
         select_origin(s, &b, COORD_SYSTEM_CODES[saved.origin_index])
     if (s.control_mode, s.tolerance, s.naivecam_tolerance) != saved.control:

@@ -11,7 +11,7 @@ from rs274ngc.canon import (
     CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_EXACT_PATH, CANON_PLANE_XZ, CANON_PLANE_YZ,
     CANON_SIDE_OFF, CANON_STOPPED, CANON_UNITS_INCHES,
 )
-from rs274ngc.modes cimport read_spindle, send_control
+from rs274ngc.modes cimport synchronised_spindle, send_control
 from rs274ngc.path cimport axis_words, feed, plane_axes, polar_to_xy, traverse
 from rs274ngc.state cimport State, fail, fail_word
 
@@ -95,7 +95,7 @@ cdef int peck(State s, Block* b, Hole* h) except -1:
 
 cdef int tap(State s, Block* b, Hole* h) except -1:
     """G84 right-hand, G74 left-hand: overrides off, feed in, reverse, dwell, feed out"""
-    cdef int n = read_spindle(s, b, "Invalid spindle ($) number in G74/G84 cycle")
+    cdef int n = synchronised_spindle(s, b, "Invalid spindle ($) number in G74/G84 cycle")
     cdef int turning = s.turning[n]
     cdef bint feed_override = s.feed_override, speed_override = s.speed_override[n]
     if turning == STOPPED:
@@ -138,7 +138,7 @@ cdef int bore(State s, Block* b, Hole* h) except -1:
 
 cdef int bore_stopped(State s, Block* b, Hole* h) except -1:
     """G86: the spindle stops before a rapid out; G88: the operator takes the tool out"""
-    cdef int n = 0, turning = s.turning[0]
+    cdef int n = s.active_spindle, turning = s.turning[n]
     if turning == STOPPED:
         return fail(s, f"Spindle not turning in {'g86' if h.code == 860 else 'g88'}", b.g_at[1])
     at_height(s, h.bottom, h.third, False)
@@ -165,7 +165,7 @@ cdef int back_bore(State s, Block* b, Hole* h) except -1:
     cdef double* beside = [s.cycle_i, s.cycle_j, s.cycle_k]
     cdef double x = h.x + beside[h.first % 3], y = h.y + beside[h.second % 3], middle = beside[h.third % 3]
     cdef double hole_x = h.x, hole_y = h.y
-    cdef int n = 0, turning = s.turning[0]
+    cdef int n = s.active_spindle, turning = s.turning[n]
     if s.incremental:
         middle += h.bottom
     if turning == STOPPED:

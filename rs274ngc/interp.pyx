@@ -356,6 +356,25 @@ cdef class Interpreter:
             fail(self.state, "DISABLE_FANUC_STYLE_SUB set in INI file, but found m99")
         self.flow.end_subprogram()
 
+    def read_subroutine(self, str label, take):
+        """Call a subroutine whose lines are not executed: ``take()`` looks at each in ``state.block``, for the lathe cycles."""
+        cdef State s = self.state
+        cdef int level = len(s.frames), line = s.line
+        cdef bytes raw = s.raw[:s.raw_size]
+        self.flow.enter(label, [])
+        s.profile = True
+        try:
+            while len(s.frames) > level:
+                if self.read_line() == ENDFILE:
+                    fail(s, "File ended with no percent sign or program end")
+                if s.block.steps:
+                    take()
+        finally:
+            s.profile = False
+        memcpy(s.raw, <const char*>raw, len(raw) + 1)
+        s.raw_size, s.line = <int>len(raw), line
+        s.block.steps = 0
+
     def execute(self):
         """Run the line that was read: INTERP_OK, INTERP_EXIT or INTERP_EXECUTE_FINISH."""
         try:

@@ -104,6 +104,7 @@ cdef int set_feed_mode(State s, Block* b, int code) except -1:
         s.canon.set_feed_rate(0.0)
         s.feed = 0.0
     else:
+        s.active_spindle = spindle
         s.canon.comment("interpreter: feed mode set to units per revolution")
         s.canon.set_feed_mode(spindle, 1)
         s.canon.set_feed_rate(0.0)
@@ -142,8 +143,14 @@ cdef int set_spindle_mode(State s, Block* b, int code) except -1:
         s.css[spindle] = fabs(value_or(b, W_D, 1.0e30))
     else:
         s.css[spindle] = 0.0
+    s.active_spindle = spindle
     s.canon.set_spindle_mode(spindle, s.css[spindle])
     return 0
+
+
+cdef int synchronised_spindle(State s, Block* b, str message) except -1:
+    """The spindle that a move keeps step with: of the $ word, else the one that G96 or G97 named last."""
+    return read_spindle(s, b, message) if has(b, W_DOLLAR) else s.active_spindle
 
 
 cdef int read_spindles(State s, Block* b, str message, int* first, int* last) except -1:

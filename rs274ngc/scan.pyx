@@ -5,7 +5,7 @@ stripped text, with plain C values. Expressions and parameters are evaluated on 
 effect when the whole line was read. Errors name the place in the stripped text; the interpreter finds the column from it.
 """
 
-from libc.math cimport acos, asin, atan2, ceil, cos, exp, fabs, floor, fmod, isinf, isnan, log, pow, sin, sqrt, tan
+from libc.math cimport acos, asin, atan2, ceil, cosl, exp, fabs, floor, fmod, isinf, isnan, log, pow, sin, sqrt, tanl
 from libc.stdlib cimport strtod
 from libc.string cimport memcpy, memset
 
@@ -13,6 +13,12 @@ from rs274ngc.block cimport *
 from rs274ngc.modal cimport g_code, g_group, m_code, m_group, word_step
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named, set_numbered
 from rs274ngc.state cimport State, fail
+
+cdef extern from *:
+    """
+    static const long double LONG_DEGREE = 3.141592653589793238462643383279502884L / 180.0L;
+    """
+    const long double LONG_DEGREE       # LinuxCNC's cosine and tangent are extended ones
 
 cdef double DEGREE = 0.017453292519943295
 cdef double INTEGER_TOLERANCE = 0.0001
@@ -121,6 +127,8 @@ cdef int read_value(State s, int* at, double* out, int depth=0) except -1:
         return read_number(s, at, out)
     if depth > DEPTH_MAX:
         return fail(s, "Expression nested too deeply", at[0])
+    if (c == c'-' or c == c'+') and s.text[at[0] + 1] == 0:
+        return read_number(s, at, out)
     if c == 0:
         return fail(s, "No characters found in reading real value", at[0])
     if c == c'[':
@@ -390,7 +398,7 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
             return fail(s, "Argument to asin out of range", at)
         x[0] = asin(v) / DEGREE
     elif function == F_COS:
-        x[0] = cos(v * DEGREE)
+        x[0] = <double>cosl(v * LONG_DEGREE)
     elif function == F_EXP:
         x[0] = exp(v)
     elif function == F_FIX:
@@ -410,7 +418,7 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
             return fail(s, "Negative argument to sqrt", at)
         x[0] = sqrt(v)
     else:
-        x[0] = tan(v * DEGREE)
+        x[0] = <double>tanl(v * LONG_DEGREE)
     return 0
 
 
@@ -572,7 +580,7 @@ cdef int read_word(State s, Block* b, int word, int* at, int start) except -1:
     """A letter that takes a value; some must be whole or not negative."""
     cdef int whole
     cdef double value
-    if word_step[word] < 0 or (AXIS_OF_WORD[word] >= 0 and not (s.axis_mask >> AXIS_OF_WORD[word]) & 1):
+    if word_step[word] < 0 or (AXIS_OF_WORD[word] >= 0 and not (s.axis_mask >> AXIS_OF_WORD[word]) & 1 and not s.profile):
         return bad_character(s, s.text[start], start)
     if has(b, word):
         return fail(s, repeated(word), start)

@@ -128,6 +128,7 @@ cdef class State:
     cdef public int error_at
     cdef public int modal_version
     cdef public bint percent, ended, must_finish
+    cdef public bint profile        # a lathe profile is read: its A, C, U, W are no axes
     cdef object named_lookup
     cdef public long blocks
     cdef public object interp

@@ -5,7 +5,7 @@ from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_SIDE_OFF, CANON_STOPPED
-from rs274ngc.modes cimport read_spindle
+from rs274ngc.modes cimport synchronised_spindle
 from rs274ngc.path cimport feed, find_end, traverse
 from rs274ngc.state cimport State, fail, fail_word
 
@@ -32,7 +32,7 @@ cdef int check_threading(State s, Block* b, int code) except -1:
 
 cdef int turning_spindle(State s, Block* b, str name) except -1:
     """The spindle of the $ word, which must turn."""
-    cdef int spindle = read_spindle(s, b, f"Invalid spindle ($) number in {name} move")
+    cdef int spindle = synchronised_spindle(s, b, f"Invalid spindle ($) number in {name} move")
     if s.turning[spindle] == STOPPED:
         return fail(s, f"Spindle not turning in {name}", b.g_at[1])
     return spindle
@@ -137,7 +137,7 @@ cdef int threading_cycle(State s, Block* b, int code) except -1:
     cdef int number = 1, extra
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot use G76 threading cycle with cutter radius compensation on", b.g_at[1])
-    t.spindle = read_spindle(s, b, "Invalid spindle ($) number in G76 cycle")
+    t.spindle = synchronised_spindle(s, b, "Invalid spindle ($) number in G76 cycle")
     if s.turning[t.spindle] == STOPPED:
         return fail(s, f"Chosen spindle ({t.spindle}) not turning in G76", b.g_at[1])
     if b.words & M_ABC:

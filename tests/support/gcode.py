@@ -159,11 +159,12 @@ class Generator:
         return self.random.choice(
             (
                 [f"m{self.random.choice((3, 4))} $-1 s{self.number(1, 99)}", f"m5 ${n}"],
-                [f"m3 ${n} s{self.number(1, 99)}", f"g33 z{self.number()} k.5 ${n}", f"g33.1 z{self.number()} k.5 ${n}"],
+                [f"m3 ${n} s{self.number(1, 99)}", *(f"g{g} z{self.number()} k.5 ${n}" for g in (33, 33.1))],
                 [f"s100 ${n}", f"m3 ${n}", "s20 $-1"],
                 [f"g96 d{self.number(100, 200)} s{self.number(1, 50)} ${n}", f"g97 s20 ${n}"],
-                [f"m51 p0 ${n or 1}" if self.spindles > 1 else "m51 p0", "m51 p1", f"m19 r{self.number(0, 360)} q2 p{self.random.randrange(3)} ${n}"],
-                [f"s{self.number(1, 99)} ${n}", f"m{self.random.choice((3, 4, 5))} ${self.random.choice((n, -1, 9))}"],
+                [f"m51 p0 ${n or 1}" if self.spindles > 1 else "m51 p0", "m51 p1"],
+                [f"m19 r{self.number(0, 360)} q2 p{self.random.randrange(3)} ${n}"],
+                [f"s{self.number(1, 99)} ${n}", f"m{self.random.choice((3, 4, 5))} ${self.random.choice((n, -1))}"],
             )
         )
 
@@ -185,7 +186,7 @@ class Generator:
             ("_x", "_y", "_abs_z", "_feed", "_rpm", "_metric", "_motion_mode", "_plane", "_ccomp", "_coord_system",
              "_tool_offset", "_current_tool", "_selected_tool", "_value", "_call_level", "_line", "_absolute",
              "_spindle_on", "_spindle_cw", "_mist", "_flood", "_speed_override", "_feed_override", "_retract_r_plane",
-             "_current_pocket", "_selected_pocket", "_ijk_absolute_mode", "_lathe_diameter_mode", "_units_per_rev")
+             "_ijk_absolute_mode", "_lathe_diameter_mode", "_units_per_rev")
         )  # fmt: skip
         return [
             f"#<{name}> = {self.number()}",
@@ -193,6 +194,35 @@ class Generator:
             f"#<{name}>=[#<{name}>+1] g0 x[#<{name}>/2] f[#<_feed>+1]",
             f"o{self.label()} if [exists[#<{name}>]]\n(print,#<{known}>)\no{self.labels} endif",
         ]
+
+    def lathe(self) -> list[str]:
+        """A profile of lines, arcs, fillets and chamfers, roughed and finished: outside or inside, in any direction."""
+        n = self.label()
+        z, x = 0.0, self.random.choice((4.0, 20.0))
+        inside = x > 10.0
+        forwards = self.random.choice((1, -1))
+        lines = [f"g0 x{x} z0"]
+        for _ in range(self.random.randint(2, 6)):
+            dz = round(self.random.uniform(1.5, 4), 2)
+            dx = round(self.random.uniform(-1.2, 2.5) * (-1 if inside else 1), 2)
+            z, x = round(z + forwards * dz, 3), round(x + dx, 3)
+            corner = self.random.choice(("", "", "", " a.2", " c.3"))
+            if self.random.random() < 0.2 and abs(dx) > 0.1:
+                sign = self.random.choice("23")
+                centre = f"i{dx} k0" if self.random.random() < 0.5 else f"i0 k{forwards * abs(dx)}"
+                z = round(z - forwards * dz + forwards * abs(dx), 3)
+                lines.append(f"g{sign} x{x} z{z} {centre}")
+            else:
+                lines.append(f"g1 x{x} z{z}{corner}")
+        start = f"x{8 if inside else 30} z{-2 * forwards}"
+        rough = self.random.choice(("g71", "g71", "g71.2", "g72" if not inside else "g71"))
+        return [
+            "g18 g90 g8 g94 f100 m3 s100", f"g0 {start}",
+            f"o{n} sub", *lines, f"o{n} endsub",
+            f"{rough} q{n} {start} d{self.random.choice((0, 0, 0.1))} i{self.random.uniform(0.7, 3):.2f} r.2",
+            f"g70 q{n} {start} d{self.random.choice((0, 0.1))} e0 p{self.random.randint(1, 2)}",
+            "g80 g17",
+        ]  # fmt: skip
 
     def polar(self) -> list[str]:
         return ["g17 g90 g0 x3 y2", f"g0 @{self.number(1, 9)} ^{self.number(0, 360)}", f"^{self.number(0, 360)}"]
@@ -328,7 +358,7 @@ class Generator:
         (straight, 8), (modal, 4), (arc, 4), (offsets, 4), (machine, 5), (cycle, 2), (polar, 1), (inverse, 1),
         (flow, 2), (parameter, 1), (compensation, 2), (threading, 1), (per_turn, 1), (spline, 1), (tables, 1),
         (expression, 2), (nested, 1), (saved, 1), (probing, 1), (absolute_centre, 1), (diameter, 1),
-        (several_spindles, 1), (other_planes, 1), (subprogram, 1), (names, 2),
+        (several_spindles, 1), (other_planes, 1), (subprogram, 1), (names, 2), (lathe, 1),
     )  # fmt: skip
 
     def program(self, pieces: int = 25, mistake: bool = False) -> str:
