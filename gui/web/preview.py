@@ -66,6 +66,7 @@ class Job:
     moves: int = 0
     size: int = 0
     end: bytes | None = None
+    forecast: bytes | None = None
     grown: asyncio.Event = field(default_factory=asyncio.Event)
 
     def add(self, data: bytes, last: bool = False) -> None:
@@ -75,6 +76,10 @@ class Job:
         else:
             self.chunks.append(data)
             self.size += len(data)
+        self.announce()
+
+    def announce(self) -> None:
+        """Wake everybody who waits for more."""
         self.grown.set()
         self.grown = asyncio.Event()
 
@@ -99,9 +104,15 @@ class Preview:
         state.update({"preview": None})
         state.listen(self._state_changed)
 
-    def when_whole(self, action: Callable[[Path, int], None]) -> None:
-        """Call ``action(path, job)`` when a preview has come to its end."""
+    def when_done(self, action: Callable[[Path, int], None]) -> None:
+        """Call ``action(path, job)`` when a preview has come to the program's end."""
         self._done.append(action)
+
+    def attach(self, number: int, forecast: bytes) -> None:
+        """The forecast of a job, for everybody who has its picture."""
+        if self.job is not None and self.job.number == number:
+            self.job.forecast = forecast
+            self.job.announce()
 
     # --- when it is computed ---------------------------------------------------------------------------------------
 
@@ -347,6 +358,9 @@ async def _feed(client: Client, job: Job) -> None:
             await client.send_patiently(job.chunks[sent])
             sent += 1
         if job.end is not None and sent == len(job.chunks):
-            await client.send_patiently(job.end)
-            return
+            break
         await grown.wait()
+    await client.send_patiently(job.end)
+    while job.forecast is None:
+        await job.grown.wait()
+    await client.send_patiently(job.forecast)

@@ -15,6 +15,7 @@ from nml.errors import HalError
 
 MOST_PINS = 16
 MOST_SAMPLES = 100_000
+ARM_SECONDS = 5.0  # until the recording function is in its thread
 AUTO_SECONDS = 0.2  # a record without a trigger is shown this often
 
 
@@ -50,10 +51,13 @@ class Scope:
         self._deliver = deliver
         self._failed = failed
         self._over = threading.Event()
+        self._armed = threading.Event()
         self._thread = threading.Thread(target=self._run, name="web-scope", daemon=True)
 
     def start(self) -> None:
+        """Begin; returns when every period is seen, or when it has failed."""
         self._thread.start()
+        self._armed.wait(ARM_SECONDS)
 
     def stop(self) -> None:
         """End it and wait until its function is out of the thread."""
@@ -71,9 +75,12 @@ class Scope:
                 if thread is None:
                     raise HalError(f"there is no thread {self._order.thread}")
                 with Capture(session, self._order.pins, self._order.thread) as capture:
+                    self._armed.set()
                     self._record(capture, thread.period_ns * 1e-9)
         except HalError as reason:
             self._failed(str(reason))
+        finally:
+            self._armed.set()
 
     def _record(self, capture: Capture, period: float) -> None:
         run = 0

@@ -15,6 +15,7 @@ import linuxcnc
 from gui.web import dialogs, displaykeys, texts, tooltable
 from gui.web.access import Access
 from gui.web.client import Client
+from gui.web.forecast import Forecast
 from gui.web.halview import HalView
 from gui.web.hub import Hub
 from gui.web.jogging import BEAT_INTERVAL, BEAT_TIMEOUT, Jogging
@@ -55,6 +56,7 @@ class Server:
         self.hub.on_release(self.jogging.client_left)
         self.folder = ProgramFolder.of(settings.program_folder, self.config["program_extensions"])
         self.preview = Preview(ini.file.resolve(), self.config, self.state)
+        self.forecast = Forecast(ini.file.resolve(), self.state, self.preview)
         self.programs = Programs(self.machine, self.state, self.folder, self.preview)
         self.history = MdiHistory(settings.mdi_history_file)
         self.preferences = Preferences(settings.preference_file)
@@ -105,6 +107,7 @@ class Server:
         for task in self._tasks:
             task.cancel()
         self.preview.cancel()
+        self.forecast.stop()
         if self.scope is not None:
             await asyncio.to_thread(self.scope.stop)
         await asyncio.to_thread(self.machine.stop)

@@ -104,7 +104,7 @@ async def scope_start(
         loop.call_soon_threadsafe(client.send, "scope", {"run": 0, "done": True, "text": reason})
 
     server.scope, server.scope_owner = Scope(order, deliver, failed), client
-    server.scope.start()
+    await asyncio.to_thread(server.scope.start)
     client.stream("scope", asyncio.create_task(_hold_scope(server.scope)))
 
 

@@ -24,7 +24,7 @@ registerPanel({
       if (!found) return;
       setText(unit, displayUnit(app.v));
       app.release(table);
-      fill(table, headRow(app, [_("Rotation"), ""]), h("tbody", null, found.systems.map((/** @type {any} */ system) => systemRow(app, system, found.active))));
+      fill(table, headRow(app, [_("Rotation"), _("Choice")]), h("tbody", null, found.systems.map((/** @type {any} */ system) => systemRow(app, system, found.active))));
       fill(others, headRow(app, []), h("tbody", null, otherRows(found).map(([name, pose]) => plainRow(app, name, pose))));
     };
     app.store.watch(["offsets", "g5x_index", "program_units", "unit_choice", "g92_offset", "tool_offset"], () => app.panels?.isVisible("offsets") && read());

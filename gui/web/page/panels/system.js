@@ -32,7 +32,7 @@ registerPanel({
       table(_("Processes"), [_("Name"), "PID", "CPU", _("Memory"), _("State")], processes),
       table(_("Realtime threads"), [_("Name"), _("Period, µs"), _("Time, µs"), _("Longest, µs"), _("Share")], threads),
       table(_("NML buffers"), [_("Name"), _("Kind"), _("Size"), _("Queued"), _("Writes"), _("Age")], buffers),
-      table(_("Screens"), [_("Name"), _("Role"), _("Address"), _("Since"), ""], clients),
+      table(_("Screens"), [_("Name"), _("Role"), _("Address"), _("Since"), _("Controls")], clients),
     );
     /** @type {ReturnType<typeof setInterval> | undefined} */
     let timer;
