@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from typing import TYPE_CHECKING
 
 import linuxcnc
@@ -213,7 +213,7 @@ class Session:
             return
         question = GETTERS.get(name)
         if question is None:
-            self._unknown("GET", name, line)
+            self._unknown("GET", name, SETTERS, line)
             return
         try:
             _require(arguments, question.least, f"GET {name}")
@@ -227,7 +227,7 @@ class Session:
     def _set(self, name: str, arguments: Arguments, line: str) -> None:
         setting = SETTERS.get(name)
         if setting is None:
-            self._unknown("SET", name, line)
+            self._unknown("SET", name, GETTERS, line)
             return
         try:
             _require(arguments, setting.least, f"SET {name}")
@@ -260,7 +260,7 @@ class Session:
             return False
         try:
             setting.act(self, arguments)
-            if self.wait_mode == "DONE":
+            if setting.waits and self.wait_mode == "DONE":
                 self.wait_done()
             elif self.command.wait_complete(0.0) == linuxcnc.RCS_ERROR:
                 raise Refused
@@ -268,9 +268,13 @@ class Session:
             self.server.end_order()
         return True
 
-    def _unknown(self, verb: str, name: str, line: str) -> None:
-        self.say(f"error: Subcommand not found: {verb} {line.split()[1]}")
-        self.say(f"{verb} NAK")
+    def _unknown(self, verb: str, name: str, others: Container[str], line: str) -> None:
+        """Refuse a word that the verb does not know; ``others``: those of the other verb."""
+        if name in others:
+            self.say(f"{verb} {name} NAK")
+        else:
+            self.say(f"error: Subcommand not found: {verb} {line.split()[1]}")
+            self.say(f"{verb} NAK")
 
     def _refuse(self, reply: str, reason: Exception) -> None:
         """Say why, where there is something to say, and the refusal."""

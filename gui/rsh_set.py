@@ -51,13 +51,18 @@ class Access(enum.IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One `set` command. ``order``: the machine carries it out, so the reply may have to wait for its end."""
+    """One `set` command.
+
+    ``order``: the machine carries it out, so the reply may have to wait for its end; ``waits``: it has an end that comes
+    by itself.
+    """
 
     act: Setter
     usage: str = ""
     least: int = 0
     access: Access = Access.MACHINE_ON
     order: bool = True
+    waits: bool = True
 
 
 # --- orders to the machine -------------------------------------------------------------------------------------------
@@ -325,8 +330,8 @@ SETTERS: dict[str, Setting] = {
     "HOME": Setting(_home, _JOINT),
     "INI": _own(_ignored, least=0, access=Access.HELLO),
     "INIFILE": _own(_ignored, least=0, access=Access.HELLO),
-    "JOG": Setting(_jog, "<joint>|<axis> <speed>", 2),
-    "JOG_INCR": Setting(_jog_incr, "<joint>|<axis> <speed> <distance>", 3),
+    "JOG": Setting(_jog, "<joint>|<axis> <speed>", 2, waits=False),
+    "JOG_INCR": Setting(_jog_incr, "<joint>|<axis> <speed> <distance>", 3, waits=False),
     "JOG_STOP": Setting(lambda session, a: session.command.jog(linuxcnc.JOG_STOP, *_jog_target(session, a)),
                         "<joint>|<axis>", 1),
     "JOINT_HOME": Setting(_home, _JOINT),

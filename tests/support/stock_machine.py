@@ -7,6 +7,7 @@ the only program that can reach it. ``display`` runs a script for Debian's Pytho
 from __future__ import annotations
 
 import json
+import os
 import pwd
 import re
 import shutil
@@ -135,10 +136,31 @@ def display(script: str, *, changes: dict[str, str] | None = None, seconds: floa
 
     ``changes``: pieces of the INI file and what stands in their place.
     """
-    text = f"#!/usr/bin/python3\nimport json, os, subprocess, sys, time\nimport linuxcnc\nout = []\n{script}\n"
-    text += "open('out.json', 'w').write(json.dumps(out))\nopen('over', 'w').close()\n"
     wait = "import os, time\nwhile not os.path.exists('over') and os.getppid() > 1: time.sleep(0.05)\n"
-    return _run(wait, "", seconds, text, changes or {})
+    return _run(wait, "", seconds, _as_display(script, "/usr/bin/python3"), changes or {})
+
+
+def ours(folder: Path, script: str, *, changes: dict[str, str] | None = None, seconds: float = 120.0) -> list[Any]:
+    """The same script with our Python as the display of a machine of ours with the same files, in ``folder``."""
+    _write(folder, _as_display(script, sys.executable), changes or {})
+    (folder / "server.nml").write_text(re.sub(r"TCP=\d+ xdr", "", Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()))
+    done = subprocess.run(
+        [sys.executable, "-m", "linuxcnc.launcher", "machine.ini"],
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder), "PYTHONPATH": str(SOURCE)},
+        capture_output=True,
+        text=True,
+        timeout=seconds,
+        check=False,
+    )
+    assert (folder / "out.json").exists(), done.stdout + done.stderr
+    return json.loads((folder / "out.json").read_text())
+
+
+def _as_display(script: str, python: str) -> str:
+    """A program that runs the script and leaves its list ``out`` behind."""
+    text = f"#!{python}\nimport json, os, subprocess, sys, time\nimport linuxcnc\nout = []\n{script}\n"
+    return text + "open('out.json', 'w').write(json.dumps(out))\nopen('over', 'w').close()\n"
 
 
 def session(script: str, options: str = "", seconds: float = 120.0, status: str = "") -> list[Any]:
@@ -161,7 +183,7 @@ def _run(
         command += [str(SOURCE)]
         process = subprocess.run(command, timeout=seconds)
         logs = "".join((folder / name).read_text(errors="replace")[-3000:] for name in ("machine.log", "client.log"))
-        assert process.returncode == 0, logs
+        assert process.returncode == 0 and (folder / "out.json").exists(), logs
         return json.loads((folder / "out.json").read_text())
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -172,6 +194,17 @@ def _prepare(
 ) -> None:
     nml = Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()
     nml = re.sub(r"^(B emcStatus\s.*)$", rf"\1 {status}", nml, flags=re.MULTILINE)
+    _write(folder, display, changes)
+    files = {"server.nml": nml, "client.nml": remote_text(nml, options), "client.py": client}
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    for path in (folder, *folder.iterdir()):
+        shutil.chown(path, USER)
+    folder.chmod(0o755)
+
+
+def _write(folder: Path, display: str, changes: dict[str, str]) -> None:
+    """The machine's own files, but for the NML file."""
     axes = "".join(AXIS.format(letter=letter, number=number) for number, letter in enumerate("XYZ"))
     ini = INI.format(folder=folder) + axes
     for old, new in changes.items():
@@ -182,14 +215,8 @@ def _prepare(
         "stock.hal": HAL,
         "stock.tbl": "T1 P1 Z1.5 D3\n",
         "stock.var": "",
-        "server.nml": nml,
-        "client.nml": remote_text(nml, options),
         "display": display,
-        "client.py": client,
     }
     for name, text in files.items():
         (folder / name).write_text(text)
     (folder / "display").chmod(0o755)
-    for path in (folder, *folder.iterdir()):
-        shutil.chown(path, USER)
-    folder.chmod(0o755)

@@ -22,7 +22,7 @@ def answer(command, status):
             status.task.state = command.state
         case "EMC_TASK_SET_MODE":
             status.task.mode = command.mode
-        case "EMC_TASK_PLAN_RUN":
+        case "EMC_TASK_PLAN_RUN" | "EMC_JOG_CONT":
             return RCS_EXEC
         case "EMC_TASK_PLAN_EXECUTE" if command.command == "g0xq":
             return RCS_ERROR
@@ -169,6 +169,8 @@ def test_an_order_waits_for_that_of_another_connection_except_those_that_stop(se
         ("set", "error: Too few arguments for 'set' command"),
         ("get bogus", "error: Subcommand not found: GET bogus\r\nGET NAK"),
         ("set bogus 1", "error: Subcommand not found: SET bogus\r\nSET NAK"),
+        ("get home", "GET HOME NAK"),
+        ("set tool 1", "SET TOOL NAK"),
         ("bogus", "error: Command 'bogus' not found"),
         ("set estop maybe", "error: Invalid argument 'maybe', must be {on,off}\r\nSET ESTOP NAK"),
         ("set estop no", "SET ESTOP ACK"),
