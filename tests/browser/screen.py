@@ -11,7 +11,7 @@ ARTEFACTS = ROOT / "artefacts" / "browser"
 TABLET = (1280, 800)
 PHONE = (390, 844)
 TIMEOUT_MS = PATIENCE * 1000
-NETWORK_ERROR = re.compile(r"ERR_(INTERNET_DISCONNECTED|CONNECTION|NETWORK)|WebSocket connection")
+EXPECTED = re.compile(r"WebSocket connection|status of 409")  # a cut network; an upload that asks whether to replace
 GRAPHICS = "GL Driver Message"
 
 
@@ -49,7 +49,7 @@ class Screen:
             self.page.wait_for_selector("#rail [role=tab]")
 
     def _console(self, message: Any) -> None:
-        ignored = NETWORK_ERROR.search(message.text) or GRAPHICS in message.text
+        ignored = EXPECTED.search(message.text) or GRAPHICS in message.text
         if message.type in ("error", "warning") and not ignored:
             self.problems.append(f"console: {message.text}")
 
@@ -132,6 +132,10 @@ class Screen:
     def wait_text(self, text: str) -> None:
         """Wait until a visible element bears this text."""
         self.page.locator(f"text={text}").locator("visible=true").first.wait_for()
+
+    def errors(self) -> list[str]:
+        """Error notices that are on the screen."""
+        return [str(text).strip() for text in self.page.locator("#toasts [data-kind=error] p").all_inner_texts()]
 
     def picture(self, name: str, **options: Any) -> None:
         """A screenshot among the artefacts."""

@@ -61,6 +61,7 @@ def test_a_program_is_uploaded_opened_and_run(mill: int, open_screen: Any, tmp_p
     screen.page.wait_for_selector(".program-text .line[data-active]")
     screen.wait_state("Ready")
     screen.wait_position("Z", 5)
+    assert not screen.errors()
 
 
 def test_an_upload_asks_before_it_replaces_a_program(mill: int, open_screen: Any, tmp_path: Path) -> None:
@@ -95,6 +96,7 @@ def test_a_running_program_is_paused_overridden_resumed_and_aborted(mill: int, o
         screen.page.click("#stop")
         screen.wait_state("Ready")
         observer.wait(lambda state: state["interp_state"] == 1 and state["inpos"], "aborted")
+        assert not screen.errors(), "stopping is no mistake"
 
 
 def test_a_program_is_stepped_through(mill: int, open_screen: Any) -> None:

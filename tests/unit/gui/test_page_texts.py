@@ -10,6 +10,7 @@ import polib
 import pytest
 
 from gui import web
+from gui.web.wizard.questions import form
 
 FOLDER = Path(web.__file__).parent
 PAGE = FOLDER / "page"
@@ -36,6 +37,13 @@ def page_texts() -> set[str]:
     return {text for path in modules() for text in texts(path)}
 
 
+def server_texts() -> set[str]:
+    """Questions of the wizard and their choices of words, which the page looks up when it has got them."""
+    asked = form()
+    words = {choice for question in asked for choice in question.choices if choice.islower() and len(choice) > 2}
+    return {question.text for question in asked} | words - {"inch"}
+
+
 def catalogues() -> list[Path]:
     return sorted((FOLDER / "locale").glob("*.po"))
 
@@ -48,7 +56,7 @@ def test_the_page_speaks_german_besides_english() -> None:
 @pytest.mark.parametrize("path", catalogues(), ids=lambda path: path.stem)
 def test_a_catalogue_has_every_text_of_the_page(path: Path) -> None:
     catalogue = {entry.msgid: entry.msgstr for entry in polib.pofile(str(path))}
-    assert not sorted(page_texts() - {text for text, translation in catalogue.items() if translation})
+    assert not sorted((page_texts() | server_texts()) - {text for text, translation in catalogue.items() if translation})
 
 
 @pytest.mark.parametrize("path", catalogues(), ids=lambda path: path.stem)

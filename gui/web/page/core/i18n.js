@@ -23,6 +23,11 @@ export async function loadLanguage(wanted) {
   document.documentElement.lang = language;
 }
 
+/** A text that the server sends and that its catalogue has, such as a question of the wizard. @param {string} text */
+export function fromServer(text) {
+  return catalogue[text] || text;
+}
+
 /**
  * The text in the operator's language, with `{name}` replaced from the values.
  * @param {string} text @param {Record<string, string | number>} [values]

@@ -34,7 +34,7 @@ registerPanel({
       fill(list, [...messages].reverse().map((/** @type {any} */ one) =>
         h("div", { class: `message ${one.kind}`, role: "listitem" }, h("span", { class: "mono muted" }, clock(one.time)), h("span", { class: "chip" }, KINDS[one.kind]?.() ?? one.kind), h("span", { class: "grow" }, one.text)),
       ));
-      if (!messages.length) fill(list, h("p", { class: "muted" }, _("No messages.")));
+      if (!messages.length) fill(list, h("p", { class: "muted", role: "listitem" }, _("No messages.")));
     };
     const older = async () => {
       const first = app.v.message_list?.find((/** @type {any} */ one) => one.id)?.id; // the page's own have none

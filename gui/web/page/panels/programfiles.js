@@ -26,7 +26,7 @@ export function programFiles(app, edit) {
       setText(where, `/${folder}`);
       app.release(list);
       fill(list, wanted ? parentRow(found.parent, draw) : null, found.entries.map((/** @type {any} */ entry) => row(entry)));
-      if (!found.entries.length) fill(list, h("p", { class: "muted" }, _("This folder is empty.")));
+      if (!found.entries.length) fill(list, h("p", { class: "muted", role: "listitem" }, _("This folder is empty.")));
     } catch {
       setText(status, _("The folder cannot be read."));
     }

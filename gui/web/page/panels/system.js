@@ -20,8 +20,8 @@ registerPanel({
     const read = async () => {
       const found = await app.link.call("system.processes").catch(() => null);
       if (!found) return;
-      fill(processes, found.processes.map((/** @type {any} */ one) => row([one.name, one.pid, percent(one.cpu), one.memory == null ? "" : fileSize(one.memory), one.alive ? _("alive") : _("gone")], one.alive ? "" : "gone")));
-      fill(buffers, found.buffers.map((/** @type {any} */ one) => row([one.name, one.kind, fileSize(one.size), one.queue ?? "", one.writes ?? "", one.age == null ? "" : `${one.age.toFixed(1)} s`])));
+      fill(processes, found.processes.map((/** @type {any} */ one) => row([one.name, one.pid, percent(100 * one.cpu), one.memory == null ? "" : fileSize(one.memory), one.alive ? _("alive") : _("gone")], one.alive ? "" : "gone")));
+      fill(buffers, found.buffers.map((/** @type {any} */ one) => row([one.buffer, one.kind, one.type, one.messages, one.per_s?.toFixed(0), one.waiting, one.age_s == null ? "" : `${one.age_s.toFixed(2)} s`])));
       fill(threads, found.threads.flatMap(threadRows));
     };
     app.store.watch(["clients", "control"], (v) =>
@@ -31,7 +31,7 @@ registerPanel({
       root,
       table(_("Processes"), [_("Name"), "PID", "CPU", _("Memory"), _("State")], processes),
       table(_("Realtime threads"), [_("Name"), _("Period, µs"), _("Time, µs"), _("Longest, µs"), _("Share")], threads),
-      table(_("NML buffers"), [_("Name"), _("Kind"), _("Size"), _("Queued"), _("Writes"), _("Age")], buffers),
+      table(_("NML buffers"), [_("Name"), _("Kind"), _("Message"), _("Messages"), _("per second"), _("Waiting"), _("Age")], buffers),
       table(_("Screens"), [_("Name"), _("Role"), _("Address"), _("Since"), _("Controls")], clients),
     );
     /** @type {ReturnType<typeof setInterval> | undefined} */

@@ -1,12 +1,14 @@
 /** The configuration page, where no machine runs: copy a sample, or answer questions and get a configuration that starts. */
 
 import { field, fill, h, select } from "../core/dom.js";
-import { _ } from "../core/i18n.js";
+import { _, fromServer } from "../core/i18n.js";
 import { iconButton } from "../core/icons.js";
 import { registerPanel } from "../core/panels.js";
 
 /** @typedef {import("../core/app.js").App} App */
-/** @typedef {{key: string, kind: string, text: string, choices?: [any, string][], default: any, unit?: string, when?: any}} Question */
+const HEALTH_MS = 500; // between two looks whether the machine is there
+
+/** @typedef {{key: string, kind: string, text: string, choices: string[], default: any, unit: string, minimum?: number, maximum?: number, when: Record<string, any[]>}} Question */
 
 registerPanel({
   id: "samples",
@@ -57,7 +59,7 @@ function sampleCard(app, sample, result) {
   const copy = async () => showResult(app, result, await app.call("wizard.copy", { path: sample.path, name: name.value.trim() }));
   return h(
     "div",
-    { class: "card stack" },
+    { class: "card stack", data: { sample: sample.path } },
     h("h2", null, sample.name),
     h("p", null, sample.text),
     h("div", { class: "row" }, name, iconButton("save", _("Copy"), () => copy().catch(() => {})), h("span", { class: "muted mono" }, sample.path)),
@@ -69,8 +71,18 @@ function showResult(app, place, made) {
   fill(
     place,
     h("div", { class: made.check?.length ? "notice warn" : "notice" }, h("p", null, _("The configuration is in {ini}", { ini: made.ini })), (made.files ?? []).map((/** @type {string} */ file) => h("p", { class: "mono muted" }, file)), (made.check ?? []).map((/** @type {string} */ text) => h("p", null, text))),
-    h("div", { class: "row" }, iconButton("play", _("Start this machine"), () => app.act("wizard.start", { ini: made.ini }), { class: "go" })),
+    h("div", { class: "row" }, iconButton("play", _("Start this machine"), () => startMachine(app, made.ini), { class: "go" })),
   );
+}
+
+/** The machine's own server comes up where this one was. @param {App} app @param {string} ini */
+async function startMachine(app, ini) {
+  if (!(await app.act("wizard.start", { ini }))) return;
+  for (;;) {
+    await new Promise((resolve) => setTimeout(resolve, HEALTH_MS));
+    const health = await fetch("/health").then((answer) => answer.json()).catch(() => null);
+    if (health?.machine === "ok") return location.reload();
+  }
 }
 
 /** The questions as a form; a question with `when` is asked only if other answers fit. */
@@ -89,7 +101,7 @@ class Form {
   #add(question) {
     const { input, read } = control(question);
     const error = h("p", { class: "error", role: "alert" });
-    this.#fields.set(question.key, { question, read, error, element: h("div", null, field(question.text, input, question.unit), error) });
+    this.#fields.set(question.key, { question, read, error, element: h("div", null, field(label(question), input, question.unit), error) });
   }
 
   #sift() {
@@ -110,22 +122,28 @@ class Form {
   }
 }
 
+/** Questions about one axis have its letter before the dot of their key. @param {Question} question */
+function label(question) {
+  const [axis, rest] = question.key.split(".");
+  return rest ? `${axis}: ${fromServer(question.text)}` : fromServer(question.text);
+}
+
 /** @param {Question} question */
 function control(question) {
   if (question.kind === "choice") {
-    const input = select(/** @type {any} */ (question.choices), question.default, () => {});
-    return { input, read: () => question.choices?.find(([value]) => String(value) === input.value)?.[0] };
+    const input = select(question.choices.map((choice) => [choice, fromServer(choice)]), question.default, () => {});
+    return { input, read: () => input.value };
   }
-  if (question.kind === "boolean") {
-    const input = h("input", { type: "checkbox", checked: Boolean(question.default) });
-    return { input, read: () => input.checked };
+  if (question.kind === "yesno") {
+    const input = select([["yes", _("Yes")], ["no", _("No")]], question.default ? "yes" : "no", () => {});
+    return { input, read: () => input.value === "yes" };
   }
-  const numeric = question.kind === "number" || question.kind === "integer";
-  const input = h("input", { type: numeric ? "number" : "text", step: question.kind === "integer" ? 1 : "any", value: question.default ?? "", class: numeric ? "number" : "" });
-  return { input, read: () => (numeric ? input.valueAsNumber : input.value.trim()) };
+  const { minimum: min, maximum: max } = question;
+  const input = h("input", { type: "number", step: "any", min, max, value: question.default, class: "number" });
+  return { input, read: () => input.valueAsNumber };
 }
 
-/** @param {Record<string, any> | undefined | null} when other questions' keys with the answers that fit @param {Record<string, any>} answers */
+/** @param {Record<string, any[]>} when other questions' keys with the answers that fit @param {Record<string, any>} answers */
 function asked(when, answers) {
-  return Object.entries(when ?? {}).every(([key, fit]) => (Array.isArray(fit) ? fit.includes(answers[key]) : answers[key] === fit));
+  return Object.entries(when).every(([key, fit]) => fit.includes(answers[key]));
 }
