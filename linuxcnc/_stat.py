@@ -39,6 +39,7 @@ class tool_result(NamedTuple):
     orientation: int
 
 
+OFFSET_NAMES = tool_result._fields[1:10]
 NO_TOOL = tool_result._make((-1, *[0.0] * 12, 0))
 
 JOINT_KEYS = {
@@ -251,6 +252,7 @@ class stat:
         self._channel = open_channel("emcStatus")
         self._tools: Channel | None = None
         self._tool_table: tuple[tool_result, ...] = (NO_TOOL,)
+        self._tools_by_number: dict[int, dict[str, Any]] = {}
         self._message = EMC_STAT()
         self._data = cast(bytearray, self._message.data)
         self._poll_into = self._channel.poll_into
@@ -270,12 +272,27 @@ class stat:
     @property
     def tool_table(self) -> tuple[tool_result, ...]:
         """The tool table, the loaded tool first; unused places have the id -1."""
+        self._renew_tools()
+        return self._tool_table
+
+    def toolinfo(self, toolno: int) -> dict[str, Any]:
+        """What the tool table has about a tool: toolno, pocketno, offsets, diameter, angles, orientation.
+
+        The key comment is empty: the message of the table does not carry comments.
+        """
+        self._renew_tools()
+        if toolno not in self._tools_by_number:
+            raise error(f"toolinfo({toolno}): there is no such tool in the tool table")
+        return dict(self._tools_by_number[toolno])
+
+    def _renew_tools(self) -> None:
+        """Take over a tool table that io has written since the last look."""
         if self._tools is None:
             self._tools = open_channel("toolTable")
         table = self._tools.peek()
         if isinstance(table, EMC_TOOL_TABLE):
             self._tool_table = _tool_table(table)
-        return self._tool_table
+            self._tools_by_number = _tools_by_number(table)
 
     @property
     def axes(self) -> int:
@@ -296,3 +313,21 @@ def _tool_table(message: EMC_TOOL_TABLE) -> tuple[tool_result, ...]:
             for one in islice(message.tools, message.last_index + 1)
         ]
     )
+
+
+def _tools_by_number(message: EMC_TOOL_TABLE) -> dict[int, dict[str, Any]]:
+    """The same for each tool that has a number, with its pocket."""
+    return {
+        one.toolno: {
+            "toolno": one.toolno,
+            "pocketno": one.pocketno,
+            "diameter": one.diameter,
+            "frontangle": one.frontangle,
+            "backangle": one.backangle,
+            "orientation": one.orientation,
+            **dict(zip(OFFSET_NAMES, pose_tuple(one.offset), strict=True)),
+            "comment": "",
+        }
+        for one in islice(message.tools, 1, message.last_index + 1)
+        if one.toolno > 0
+    }

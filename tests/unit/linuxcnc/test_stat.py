@@ -73,6 +73,18 @@ def test_the_tool_table_ends_with_the_last_used_place(task):
     assert tools[1].zoffset == 12.5
 
 
+def test_one_tool_is_found_by_its_number(task):
+    table = EMC_TOOL_TABLE(last_index=1)
+    table.tools[1].toolno, table.tools[1].pocketno, table.tools[1].diameter = 5, 12, 3.5
+    table.tools[1].offset.tran.z = 12.5
+    with Channel(None, "toolTable", "tool") as channel:
+        channel.write(table)
+        info = linuxcnc.stat().toolinfo(5)
+        assert (info["toolno"], info["pocketno"], info["zoffset"], info["diameter"]) == (5, 12, 12.5, 3.5)
+        with pytest.raises(linuxcnc.error, match="toolinfo\\(6\\)"):
+            linuxcnc.stat().toolinfo(6)
+
+
 def test_the_status_cannot_be_changed_by_a_client(task):
     with pytest.raises(AttributeError):
         linuxcnc.stat().task_mode = 3
