@@ -16,6 +16,9 @@ from gui.web.loaded import ProgramText
 from gui.web.machine import Machine
 from gui.web.programfolder import ProgramFolder, version_of
 from gui.web.state import State
+from linuxcnc.filters import filtered
+from nml.errors import PyemcError
+from nml.inifile import IniFile
 
 LOOK = 1.0  # s between looks at files that other programs may change
 LONGEST_FILE_NAME = 254  # bytes, of task
@@ -30,8 +33,12 @@ class Rehearsal(Protocol):
 class Programs:
     """The program that task has loaded, as clients see it."""
 
-    def __init__(self, machine: Machine, state: State, folder: ProgramFolder, rehearsal: Rehearsal) -> None:
+    def __init__(
+        self, ini: IniFile, machine: Machine, state: State, folder: ProgramFolder, rehearsal: Rehearsal
+    ) -> None:
         self.text: ProgramText | None = None
+        self._ini = ini
+        self._loop = asyncio.get_running_loop()
         self._machine = machine
         self._state = state
         self._folder = folder
@@ -39,7 +46,7 @@ class Programs:
         self._checked: dict[str, Any] | None = None
         self._newest = 0.0
         self._lock = asyncio.Lock()
-        state.update({"program": None, "programs": 1, "run_from": None})
+        state.update({"program": None, "programs": 1, "run_from": None, "opening": None})
         state.listen(self._state_changed)
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -47,11 +54,25 @@ class Programs:
         """Have task load a file."""
         if self._machine.values["interp_state"] != linuxcnc.INTERP_IDLE:
             raise CallError("state", "a program runs")
-        if len(str(file).encode()) > LONGEST_FILE_NAME:
+        program = await self._through_filter(file)
+        if len(str(program).encode()) > LONGEST_FILE_NAME:
             raise CallError("file", "the file's path is too long for the machine")
         await self._machine.mode(linuxcnc.MODE_AUTO)
-        await self._machine.order("program_open", str(file))
-        await self.index(str(file))
+        await self._machine.order("program_open", str(program))
+        await self.index(str(program))
+
+    async def _through_filter(self, file: Path) -> Path:
+        """What [FILTER] makes of a file, with its progress in the state; most files are programs themselves."""
+
+        def progress(percent: int) -> None:
+            self._loop.call_soon_threadsafe(self._state.update, {"opening": {"name": file.name, "percent": percent}})
+
+        try:
+            return await asyncio.to_thread(filtered, self._ini, file, progress)
+        except PyemcError as reason:
+            raise CallError("file", "{reason}", reason=str(reason)) from None
+        finally:
+            self._state.update({"opening": None})
 
     async def changed(self, relative: str) -> None:
         """A client has written a file: the loaded one is loaded again."""

@@ -57,7 +57,7 @@ class Server:
         self.folder = ProgramFolder.of(settings.program_folder, self.config["program_extensions"])
         self.preview = Preview(ini.file.resolve(), self.config, self.state)
         self.forecast = Forecast(ini.file.resolve(), self.state, self.preview)
-        self.programs = Programs(self.machine, self.state, self.folder, self.preview)
+        self.programs = Programs(ini, self.machine, self.state, self.folder, self.preview)
         self.history = MdiHistory(settings.mdi_history_file)
         self.preferences = Preferences(settings.preference_file)
         self.tool_file: Path | None = (

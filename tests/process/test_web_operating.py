@@ -192,3 +192,25 @@ def test_run_from_a_line_that_is_never_reached_is_blocked(client):
     assert check["blocked"]
     with pytest.raises(Refused):
         client.call("program.run", line=3, token=check["token"])
+
+
+def test_a_file_with_a_filter_is_opened_as_what_the_filter_makes_of_it(tmp_path):
+    extra = "[FILTER]\nPROGRAM_EXTENSION = .pts Points\npts = sed s/^/G0X/"
+    with web_mill(tmp_path, extra=extra) as (_, port), WebClient(port) as page:
+        assert page.upload("a.pts", "1\n2\n") == 200
+        page.ready()
+        page.call("program.open", path="a.pts")
+        page.wait(lambda state: state["program"], "loaded")
+        assert page.call("program.lines", first=1, count=9)["lines"] == ["G0X1", "G0X2"]
+
+
+def test_post_gui_hal_files_find_the_displays_pins(tmp_path):
+    post = "net door-open <= web.door\nsetp web.nothing 1\n"
+    changes = {"DISPLAY.CYCLE_TIME": "50\nMESSAGE_TEXT = Door\nMESSAGE_TYPE = status\nMESSAGE_PINNAME = door"}
+    with (
+        web_mill(tmp_path, post=post, changes=changes) as (_, port),
+        WebClient(port) as page,
+    ):
+        assert page.hello["config"]["cycle_time"] == 0.05
+        assert page.call("hal.tree", filter="web.door")["items"][0]["signal"] == "door-open"
+        assert "web.nothing" in page.hello["messages"][0]["text"]

@@ -179,15 +179,28 @@ class WebClient:
 
 @contextmanager
 def web_mill(
-    folder: Path, *, changes: dict[str, str] | None = None, extra: str = "", hal: str = "", **programs: str
+    folder: Path,
+    *,
+    changes: dict[str, str] | None = None,
+    extra: str = "",
+    hal: str = "",
+    post: str = "",
+    **programs: str,
 ) -> Iterator[tuple[Run, int]]:
-    """A mill with the web display, (run, port); ``extra``: more INI lines, ``programs``: texts of NAME.ngc."""
+    """A mill with the web display, (run, port).
+
+    ``extra``: more INI lines; ``post``: text of a post-GUI HAL file; ``programs``: texts of NAME.ngc.
+    """
     nc_files = folder / "nc"
     nc_files.mkdir(exist_ok=True)
     for name, text in programs.items():
         (nc_files / f"{name}.ngc").write_text(text)
     wanted = {"DISPLAY.DISPLAY": "web --port 0 --no-browser", "DISPLAY.PROGRAM_PREFIX": str(nc_files)}
     ini = copy_mill(folder, changes=wanted | (changes or {}), hal=hal)
+    if post:
+        (folder / "post.hal").write_text(post)
+        line = "HALFILE = spindle.hal\n"
+        ini.write_text(ini.read_text().replace(line, f"{line}POSTGUI_HALFILE = post.hal\n"))
     if extra:
         ini.write_text(f"{ini.read_text()}\n{extra}\n")
     with running(ini) as run:
