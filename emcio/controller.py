@@ -196,7 +196,11 @@ class IoController:
         self.changer.table_changed = self.changer.must_save = True
 
     def _load_table(self, command: EMC_TOOL_LOAD_TOOL_TABLE) -> None:
-        for remark in self.source.load(self.store, command.file):
+        self._took_over(self.source.reload(self.store, command.file))
+
+    def _took_over(self, remarks: list[str]) -> None:
+        """The store holds other tools than before, but for those that were left out."""
+        for remark in remarks:
             self._complain(remark)
         self.pins["tool-number"] = self.store.in_spindle
         self.changer.table_changed = True
@@ -228,6 +232,9 @@ class IoController:
 
     def _follow_table(self) -> None:
         changer = self.changer
+        remarks = self.source.arrived(self.store)
+        if remarks is not None:
+            self._took_over(remarks)
         for event in changer.spindle_events:
             self.source.spindle(*event)
         changer.spindle_events.clear()

@@ -2,7 +2,8 @@
 
 Protocol v2.1 of LinuxCNC's manual, chapter 9.10: the program begins with a line ``v2.1``. ``g`` asks for all tools:
 lines in the format of a tool table, then ``FINI``. ``p LINE`` tells new values, ``l Tn P0`` a loaded spindle, ``u Tn
-Pm`` an unloaded one; each is answered by a line, and one with NAK is a complaint. Telling happens in its own thread.
+Pm`` an unloaded one; each is answered by a line, and one with NAK is a complaint. Whatever is said after the start is
+said in a thread of its own: a program that takes its time never holds up the E-stop chain.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from emcio.tooltable import Tool, format_line, parse_line
 from nml.errors import ConfigError
 
 VERSION = "v2.1"
+ALL = "g"
 ANSWER_S = 5.0  # host time that the program has for an answer
 
 
@@ -32,6 +34,7 @@ class DatabaseTools:
             raise ConfigError(f"[EMCIO]DB_PROGRAM = {command[0]}: {error.strerror}") from None
         self._talk = threading.Lock()
         self._failure: str | None = None
+        self._fresh: tuple[list[Tool], list[str]] | None = None
         self._orders: queue.Queue[str | None] = queue.Queue()
         self._lines: queue.Queue[str | None] = queue.Queue()
         self._reader = threading.Thread(target=self._read, name="tool data base answers", daemon=True)
@@ -45,11 +48,28 @@ class DatabaseTools:
         self._thread.start()
 
     def load(self, store: ToolStore, path: str = "") -> list[str]:
-        """Ask for all tools."""
+        """Ask for all tools and wait for the answer."""
+        tools, remarks = self._all_tools()
+        return remarks + store.load(tools)
+
+    def reload(self, store: ToolStore, path: str = "") -> list[str]:
+        """Ask for all tools; ``arrived`` takes them over when the program has answered."""
+        self._orders.put(ALL)
+        return []
+
+    def arrived(self, store: ToolStore) -> list[str] | None:
+        """Take over the answer to ``reload``; None if there is none yet."""
+        fresh, self._fresh = self._fresh, None
+        if fresh is None:
+            return None
+        tools, remarks = fresh
+        return remarks + store.load(tools)
+
+    def _all_tools(self) -> tuple[list[Tool], list[str]]:
         remarks: list[str] = []
         tools: list[Tool] = []
         with self._talk:
-            self._say("g")
+            self._say(ALL)
             while (line := self._line()) != "FINI":
                 try:
                     tool = parse_line(line)
@@ -58,7 +78,7 @@ class DatabaseTools:
                     continue
                 if tool is not None:
                     tools.append(tool)
-        return remarks + store.load(tools)
+        return tools, remarks
 
     def save(self, store: ToolStore) -> None:
         """The program keeps what ``put`` and ``spindle`` told it."""
@@ -74,7 +94,7 @@ class DatabaseTools:
     @property
     def busy(self) -> bool:
         """Is there something left to tell?"""
-        return bool(self._orders.unfinished_tasks)
+        return bool(self._orders.unfinished_tasks) or self._fresh is not None
 
     def failure(self) -> str | None:
         """What the program complained of, told once."""
@@ -95,15 +115,21 @@ class DatabaseTools:
     def _run(self) -> None:
         while (order := self._orders.get()) is not None:
             try:
-                with self._talk:
-                    self._say(order)
-                    answer = self._line()
-                if "NAK" in answer:
-                    self._failure = f"the tool data base refused {order!r}: {answer}"
+                if order == ALL:
+                    self._fresh = self._all_tools()
+                else:
+                    self._tell(order)
             except ConfigError as error:
                 self._failure = error.message
             finally:
                 self._orders.task_done()
+
+    def _tell(self, order: str) -> None:
+        with self._talk:
+            self._say(order)
+            answer = self._line()
+        if "NAK" in answer:
+            self._failure = f"the tool data base refused {order!r}: {answer}"
 
     def _say(self, text: str) -> None:
         assert self._process.stdin is not None

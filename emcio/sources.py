@@ -19,6 +19,12 @@ class ToolSource(Protocol):
         ConfigError, store unchanged, when there is nothing to read.
         """
 
+    def reload(self, store: ToolStore, path: str = "") -> list[str]:
+        """As ``load``, at the operator's wish; may leave it to ``arrived``."""
+
+    def arrived(self, store: ToolStore) -> list[str] | None:
+        """What was left out of tools that came after ``reload`` and are in the store now; None: none came."""
+
     def save(self, store: ToolStore) -> None:
         """Pockets or values have changed; returns at once."""
 
@@ -51,6 +57,11 @@ class NoTools:
         table = ToolFile(path)
         return table.remarks + store.load(table.tools, table)
 
+    reload = load
+
+    def arrived(self, store: ToolStore) -> None:
+        """Nothing comes late."""
+
     def save(self, store: ToolStore) -> None:
         """Nowhere to write to."""
 
@@ -82,6 +93,11 @@ class FileTools:
         if not path or Path(path).resolve() == self._file.path.resolve():
             self._file = table
         return remarks
+
+    reload = load
+
+    def arrived(self, store: ToolStore) -> None:
+        """Nothing comes late."""
 
     def save(self, store: ToolStore) -> None:
         """Write every value that changed."""

@@ -23,7 +23,7 @@ from nml.config import NmlConfig
 from nml.errors import ConfigError, PyemcError
 from nml.inifile import IniFile
 
-START_TIMEOUT_S = 10.0  # host time for motion and io to appear
+START_TIMEOUT_S = 120.0  # host time for motion and io to appear: HAL files may wait for hardware
 
 stopping = False
 
@@ -66,7 +66,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
     def channel(buffer: str) -> Channel:
         return Channel(nml, buffer, process="emc")
 
-    motion = MotionClient(channel("emcmotCommand"), channel("emcmotStatus"), channel("emcmotError"))
+    motion = MotionClient(channel("emcmotCommand"), channel("emcmotStatus"), channel("emcmotError"), config.heartbeat_s)
     io = IoClient(channel("toolCmd"), channel("toolSts"), channel("toolTable"))
     _wait_until(lambda: motion.poll() or motion.known, "motion does not answer: is motmod loaded, its thread started?")
     _wait_until(lambda: io.poll() or io.known, "io does not answer: is it running?")

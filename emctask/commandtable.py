@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Handler = Callable[["Task", Any], None]
 
 MANUAL = frozenset({Mode.MANUAL})
-MDI = frozenset({Mode.MDI})
+TYPED = frozenset({Mode.MDI, Mode.MANUAL})
 AUTO = frozenset({Mode.AUTO})
 ANY = frozenset(Mode)
 
@@ -90,8 +90,6 @@ def check(rule: Rule, message: Message, state: State, mode: Mode, interp: Interp
         raise Refused(f"command ({name}) cannot be executed until the machine is out of E-stop and turned on")
     if mode in rule.modes and (interp is Interp.IDLE or not rule.idle):
         return
-    if rule.modes == MDI and mode is Mode.MANUAL:
-        raise Refused("Must be in MDI mode to issue MDI command")
     if mode is Mode.AUTO:
         raise Refused(f"can't do that ({name}) in auto mode with the interpreter {interp.name.lower()}")
     raise Refused(f"can't do that ({name}:{message.TYPE_ID}) in {MODE_NAMES[mode]} mode")

@@ -18,6 +18,7 @@ from nml.inifile import IniFile
 AXES = "XYZABCUVW"
 UNLIMITED = 1e99
 LINEAR, ANGULAR = 1, 2
+DEFAULT_HEARTBEAT_S = 0.5
 
 LENGTH_UNITS = {
     "mm": 1.0,
@@ -155,6 +156,7 @@ class MachineConfig:
     tool_change_position: tuple[float, ...]
     """X Y Z, X to C or X to W, machine coordinates; empty: tools are changed where the machine stands."""
     comm_timeout_s: float
+    heartbeat_s: float
     max_axis_velocities: list[float] = field(default_factory=list)
     max_axis_accelerations: list[float] = field(default_factory=list)
 
@@ -203,6 +205,7 @@ def read_config(ini: IniFile) -> MachineConfig:
         debug=_as_int32(ini.integer("EMC", "DEBUG", 0)),
         random_toolchanger=ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False),
         tool_change_position=_point(ini, "EMCIO", "TOOL_CHANGE_POSITION", (0, 3, 6, 9)),
+        heartbeat_s=ini.real("EMCMOT", "HEARTBEAT_TIMEOUT", DEFAULT_HEARTBEAT_S, minimum=0.02, maximum=10.0),
         comm_timeout_s=ini.real("EMCMOT", "COMM_TIMEOUT", 1.0, minimum=0.01),
         max_axis_velocities=[axes[a].max_velocity if a in axes else UNLIMITED for a in range(9)],
         max_axis_accelerations=[axes[a].max_acceleration if a in axes else UNLIMITED for a in range(9)],

@@ -28,8 +28,7 @@ MOVE = Span(EMCMOT_COMMAND, "command", "tolerance")
 """command, joint, axis, spindle, id, pos (9), center (3), normal (3), turn, motion_type, vel, ini_maxvel, acc, jerk,
 termCond, mode, tolerance."""
 
-HEARTBEAT_S = 0.1  # host time between two signs of life when there is nothing else to send
-WATCHDOG_S = 0.8  # host time without a sign of life from task after which motion stops the machine
+BEATS = 5  # signs of life within the time that motion waits for one
 DEAD_S = 0.85  # host time without a new status after which motion counts as gone
 RESERVE = 10  # places of the planner's queue that task leaves free
 
@@ -37,7 +36,9 @@ RESERVE = 10  # places of the planner's queue that task leaves free
 class MotionClient:
     """Commands out, status in."""
 
-    def __init__(self, commands: Channel, status: Channel, errors: Channel) -> None:
+    def __init__(self, commands: Channel, status: Channel, errors: Channel, watchdog_s: float) -> None:
+        self.watchdog_s = watchdog_s
+        """Host time without a sign of life from task after which motion stops the machine."""
         self._commands = commands
         self._status = status
         self._errors = errors
@@ -171,7 +172,7 @@ class MotionClient:
 
     def beat(self) -> None:
         """Tell motion that task is alive, if nothing else did lately."""
-        if clock.host_now() - self._last_sent_at >= HEARTBEAT_S:
+        if clock.host_now() - self._last_sent_at >= self.watchdog_s / BEATS:
             self.send(MotCommand.HEARTBEAT)
 
     def close(self) -> None:

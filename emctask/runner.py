@@ -241,8 +241,6 @@ class Runner:
         task.mdi_text = ""
         task.sequencer.abort()
         task.motion.send(MotCommand.ABORT)
-        if task.paused or task.motion.status.paused:
-            task.motion.send(MotCommand.RESUME)  # there is nothing left to go on with
         task.paused = False
         self.stop_spindles()
         task.io.send_first(EMC_TOOL_ABORT(reason=reason))

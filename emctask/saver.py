@@ -6,6 +6,8 @@ import logging
 import threading
 from collections.abc import Callable
 
+from nml.errors import PyemcError
+
 log = logging.getLogger(__name__)
 
 
@@ -41,6 +43,6 @@ class Saver:
             self._wanted.clear()
             try:
                 self._save()
-            except OSError as error:
-                self.failure = f"the parameter file cannot be written: {error.strerror or error}"
+            except (OSError, PyemcError) as error:
+                self.failure = f"the parameter file cannot be written: {error}"
                 log.warning("%s", self.failure)

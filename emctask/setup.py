@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from emctask import positionfile
 from emctask.config import AxisConfig, BlendConfig, JointConfig, MachineConfig
-from emctask.motion import WATCHDOG_S, MotionClient
+from emctask.motion import MotionClient
 from nml.emc.emcmot import MotCommand
 
 
@@ -12,7 +12,7 @@ def configure_motion(motion: MotionClient, config: MachineConfig) -> None:
     """Send everything that motion must know before the machine may be switched on."""
     motion.send(MotCommand.SET_NUM_JOINTS, joint=len(config.joints))
     motion.send(MotCommand.SET_NUM_SPINDLES, spindle=len(config.spindles))
-    motion.send(MotCommand.SET_HEARTBEAT_TIMEOUT, timeout=WATCHDOG_S)
+    motion.send(MotCommand.SET_HEARTBEAT_TIMEOUT, timeout=motion.watchdog_s)
     path_limits(motion, config)
     motion.send(MotCommand.SET_MAX_FEED_OVERRIDE, scale=config.max_feed_override)
     motion.send(MotCommand.SET_WORLD_HOME, pos=config.world_home)

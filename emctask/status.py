@@ -15,6 +15,8 @@ from emctask.places import Modes
 from nml import clock
 from nml.channel import Channel
 from nml.emc import EMC_STAT
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
+from nml.emc.constants import EMC_TRAJ_MODE_ENUM as TrajMode
 
 if TYPE_CHECKING:
     from emctask.task import Task
@@ -48,6 +50,8 @@ class StatusWriter:
     def write(self, task: Task) -> None:
         """Fill the message; write it when something changed, and as a sign of life."""
         self._motion.fill(task.motion.image)
+        if not task.motion.enabled:
+            self.message.motion.traj.mode = self._mode_when_on(task)
         self._fill_task(task)
         stat = self.message
         io = task.io.status
@@ -59,6 +63,13 @@ class StatusWriter:
             self._channel.write(stat)
             self._written[:] = image(stat)
             self._last = now
+
+    @staticmethod
+    def _mode_when_on(task: Task) -> TrajMode:
+        """How motion will move once the machine is on."""
+        if task.mode is not Mode.MANUAL:
+            return TrajMode.COORD
+        return TrajMode.TELEOP if task.motion.all_homed else TrajMode.FREE
 
     # --- Task
 

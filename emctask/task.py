@@ -135,7 +135,7 @@ class Task:
             or bool(self.mdi_queue)
             or not self.sequencer.idle
             or not self.io.done
-            or not self.at_rest
+            or not (self.at_rest or self.jogs)
             or self.supervisor.homing_ends
         )
 
@@ -148,6 +148,11 @@ class Task:
     def at_rest(self) -> bool:
         """Has motion taken and finished everything? A machine that is off cannot be in position."""
         return self.motion.settled or (self.motion.echoed and not self.motion.enabled)
+
+    @property
+    def jogs(self) -> bool:
+        """Does the operator jog? The order is done when motion has taken it, so that the next one can end the jog."""
+        return self.motion.echoed and bool(self.motion.status.jogging_active)
 
     @property
     def rcs_status(self) -> int:

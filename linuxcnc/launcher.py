@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 from types import FrameType
@@ -21,6 +22,7 @@ from nml import clock, namespace
 if TYPE_CHECKING:
     from linuxcnc.machine import Machine
 
+WIZARD = "gui.web"  # its page offers configurations and starts one
 POLL = 0.05  # host seconds between looks at the processes
 
 
@@ -45,6 +47,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"linuxcnc: {reason}", file=sys.stderr)
         return 1
     try:
+        if options.ini is None and not options.last and _only_a_desktop():
+            return subprocess.call([sys.executable, "-P", "-m", WIZARD, "--wizard"])
         return _launch(options)
     except Stopped as stopped:
         print(f"linuxcnc: {stopped}", file=sys.stderr)
@@ -53,11 +57,19 @@ def main(arguments: list[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
+def _only_a_desktop() -> bool:
+    """Was it started by an icon, so that a configuration is best chosen in a browser?"""
+    from linuxcnc import picker
+
+    return not picker.has_terminal() and picker.has_desktop()
+
+
 def _launch(options: argparse.Namespace) -> int:
     """Run the machine to its end; problems of the user's making become one line."""
     from linuxcnc import lastused
     from linuxcnc._connection import error
     from linuxcnc.configuration import Configuration
+    from linuxcnc.filters import filtered
     from linuxcnc.machine import END_SIGNALS, Machine, to_stderr
     from linuxcnc.program import ProgramError, run_program
     from nml.errors import PyemcError
@@ -88,7 +100,8 @@ def _launch(options: argparse.Namespace) -> int:
             machine.start()
             started = True
             if options.run is not None:
-                print(run_program(machine.check, options.run.resolve()), flush=True)
+                part = filtered(configuration.ini, options.run.resolve(), say=to_stderr)
+                print(run_program(machine.check, part), flush=True)
                 return 0
             return _follow_display(machine)
     except (PyemcError, ProgramError, error) as reason:

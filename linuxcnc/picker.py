@@ -6,6 +6,7 @@ the list; numbers stay the same whatever is shown.
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -51,9 +52,19 @@ def offers(places: Sequence[Path]) -> list[Offer]:
     return [Offer(number, path) for number, path in enumerate(dict.fromkeys(found), 1)]
 
 
+def has_terminal() -> bool:
+    """Is there a person at a terminal?"""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def has_desktop() -> bool:
+    """Is there a desktop, where a browser can be opened?"""
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
 def pick() -> Path:
     """Let the person at the terminal choose; NothingChosen without a terminal."""
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+    if not has_terminal():
         raise NothingChosen("no INI file named, and no terminal to choose one in; give linuxcnc INI, or linuxcnc -l")
     return choose(offers(folders()), input, print)
 

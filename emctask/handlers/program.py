@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import AUTO, MDI, Refused, command
+from emctask.commandtable import AUTO, TYPED, Refused, command
 from nml.emc import (
     EMC_TASK_PLAN_CLOSE,
     EMC_TASK_PLAN_END,
@@ -24,6 +24,7 @@ from nml.emc import (
     EMC_TASK_PLAN_SYNCH,
 )
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.emcmot import MotCommand
 from nml.errors import PyemcError
 from nml.message import Message
@@ -56,15 +57,17 @@ def close_program(task: Task, message: EMC_TASK_PLAN_CLOSE) -> None:
 def run(task: Task, message: EMC_TASK_PLAN_RUN) -> None:
     """Run the loaded program from a line; below 0: only check it."""
     if not task.plan.open_file:
-        raise Refused("there is no program to run; open one first")
+        raise Refused("File not open")
     _must_be_homed(task, "run a program")
     task.runner.run_program(message.line)
 
 
-@command(EMC_TASK_PLAN_EXECUTE, on=True, modes=MDI)
+@command(EMC_TASK_PLAN_EXECUTE, on=True, modes=TYPED)
 def execute(task: Task, message: EMC_TASK_PLAN_EXECUTE) -> None:
     """Run an MDI line, after those before it."""
     _must_be_homed(task, "issue MDI command")
+    if task.mode is not Mode.MDI:
+        raise Refused("Must be in MDI mode to issue MDI command")
     if len(task.mdi_queue) >= task.config.mdi_queue:
         raise Refused(f"{len(task.mdi_queue)} MDI lines wait already; [TASK]MDI_QUEUED_COMMANDS allows no more")
     task.runner.run_mdi(message.command)
@@ -88,7 +91,7 @@ def step(task: Task, message: EMC_TASK_PLAN_STEP) -> None:
     """Run one block: of the program that is paused, or the first of the loaded one."""
     if task.interp_state is Interp.IDLE:
         if not task.plan.open_file:
-            raise Refused("there is no program to step through; open one first")
+            raise Refused("File not open")
         _must_be_homed(task, "run a program")
         task.runner.run_program(0)
         task.runner.stepping = True
@@ -110,17 +113,21 @@ def set_block_delete(task: Task, message: EMC_TASK_PLAN_SET_BLOCK_DELETE) -> Non
     task.block_delete = task.canon.block_delete = bool(message.state)
 
 
-@command(EMC_TASK_PLAN_REVERSE, on=True, modes=AUTO)
+@command(EMC_TASK_PLAN_REVERSE, on=True)
 def reverse(task: Task, message: EMC_TASK_PLAN_REVERSE) -> None:
-    """Move back along the path; only while the program is paused."""
+    """Move back along the path; only while the program is paused. Without a program there is no way back."""
+    if task.interp_state is Interp.IDLE:
+        return
     if not task.paused:
         raise Refused("a program can run backwards only while it is paused; pause it first")
     task.motion.send(MotCommand.REVERSE)
 
 
-@command(EMC_TASK_PLAN_FORWARD, on=True, modes=AUTO)
+@command(EMC_TASK_PLAN_FORWARD, on=True)
 def forward(task: Task, message: EMC_TASK_PLAN_FORWARD) -> None:
     """Move along the path in its own direction again."""
+    if task.interp_state is Interp.IDLE:
+        return
     task.motion.send(MotCommand.FORWARD)
 
 

@@ -76,14 +76,14 @@ def constant(task: Task, message: Message) -> None:
     """End of a step; motion's steps end by themselves."""
 
 
-@command(EMC_SPINDLE_BRAKE_ENGAGE)
+@command(EMC_SPINDLE_BRAKE_ENGAGE, on=True)
 def engage_brake(task: Task, message: EMC_SPINDLE_BRAKE_ENGAGE) -> None:
     """Engage the brake, which stops the spindle."""
     for spindle in _spindles(task, message.spindle):
         task.motion.send(MotCommand.SPINDLE_BRAKE_ENGAGE, spindle=spindle)
 
 
-@command(EMC_SPINDLE_BRAKE_RELEASE)
+@command(EMC_SPINDLE_BRAKE_RELEASE, on=True)
 def release_brake(task: Task, message: EMC_SPINDLE_BRAKE_RELEASE) -> None:
     """Release the brake."""
     for spindle in _spindles(task, message.spindle):

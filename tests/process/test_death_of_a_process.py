@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import linuxcnc
-from emctask.motion import WATCHDOG_S
+from emctask.config import DEFAULT_HEARTBEAT_S
 from tests.process.test_running_programs import ACCELERATION, PERIOD, VELOCITY
 from tests.support import verify
 from tests.support.machine import Run, copy_mill, processes, running, traces, wait_until
@@ -71,7 +71,7 @@ def test_motion_alone_notices_the_death_of_task_within_its_watchdog(tmp_path):
         run.process.send_signal(signal.SIGCONT)
         assert run.finish() == 1
     last_moved = np.flatnonzero(np.diff(samples, axis=0).any(axis=1))[-1]
-    watchdog, stopping = WATCHDOG_S * SPEED / PERIOD, max(VELOCITY) / min(ACCELERATION) / PERIOD
+    watchdog, stopping = DEFAULT_HEARTBEAT_S * SPEED / PERIOD, max(VELOCITY) / min(ACCELERATION) / PERIOD
     assert before < last_moved < before + CATCHING_UP * watchdog + stopping
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
     assert traces() == []
@@ -97,7 +97,8 @@ def test_a_guard_that_dies_is_replaced(tmp_path):
     ini = copy_mill(tmp_path)
     with running(ini, speed=SPEED) as run:
         run.port()
-        ours = {pid for pid, command in processes() if "linuxcnc.launcher" in command} - {run.process.pid}
+        ours = {pid for pid, command in processes() if "linuxcnc.launcher" in command}
+        ours -= {run.process.pid, *run.pids().values()}
         (guard,) = ours
         os.kill(guard, signal.SIGKILL)
 

@@ -7,9 +7,13 @@ import sys
 
 import pytest
 
+from linuxcnc import launcher as module
 from tests.support.machine import ROOT, Run, copy_mill, traces
 
 pytestmark = pytest.mark.process
+
+
+DESKTOP = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def started(folder, *options, changes=None, hal=""):
@@ -28,7 +32,7 @@ def launcher(home, *words, stdin=subprocess.DEVNULL):
     return subprocess.run(
         [sys.executable, "-m", "linuxcnc.launcher", *words],
         cwd=ROOT,
-        env=os.environ | {"HOME": str(home), "TERM": "dumb"},
+        env=os.environ | dict.fromkeys(DESKTOP, "") | {"HOME": str(home), "TERM": "dumb"},
         stdin=stdin,
         capture_output=True,
         text=True,
@@ -109,6 +113,16 @@ def test_without_a_configuration_and_a_terminal_one_line_says_so(tmp_path):
     assert answer.returncode == 1
     assert "no terminal" in answer.stderr
     assert len(answer.stderr.splitlines()) == 1
+
+
+def test_an_icon_on_a_desktop_starts_the_wizard(monkeypatch):
+    started_with = []
+    monkeypatch.setattr(module.subprocess, "call", lambda words: started_with.append(words) or 0)
+    monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
+    with open(os.devnull) as nobody:
+        monkeypatch.setattr(sys, "stdin", nobody)
+        assert module.main([]) == 0
+    assert started_with == [[sys.executable, "-P", "-m", "gui.web", "--wizard"]]
 
 
 def test_a_configuration_is_chosen_in_a_dumb_terminal(tmp_path):

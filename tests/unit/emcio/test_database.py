@@ -9,6 +9,7 @@ from emcio.database import DatabaseTools
 from emcio.toolstore import ToolStore
 from emcio.tooltable import Tool
 from nml.errors import ConfigError
+from tests.support.machine import wait_until
 
 PROGRAM = """
     import sys
@@ -23,6 +24,17 @@ PROGRAM = """
         else:
             print("ACK", flush=True)
 """
+
+SLOW = """
+    import sys
+    print("v2.1", flush=True)
+    sys.stdin.readline()
+    open("asked", "w").close()
+    sys.stdin.readline()
+    print("T1 P17", "rubbish", "FINI", sep="\\n", flush=True)
+    sys.stdin.read()
+"""
+"""Answers the first question when it is given another line."""
 
 
 @pytest.fixture
@@ -40,6 +52,22 @@ def test_all_tools_are_asked_for_and_a_wrong_line_is_named(tools):
     assert [store.index_of(1), store.index_of(110), store.pocket_of(2)] == [1, 2, 113]
     assert len(remarks) == 1
     assert "'rubbish'" in remarks[0]
+
+
+def test_reading_the_tools_anew_does_not_wait_for_a_slow_program(tmp_path):
+    (tmp_path / "slow.py").write_text(textwrap.dedent(SLOW))
+    source = DatabaseTools([sys.executable, "slow.py"], tmp_path)
+    store = ToolStore(random=False)
+    assert source.reload(store) == []
+    wait_until((tmp_path / "asked").exists, "the program is asked")
+    assert (source.busy, source.arrived(store), store.index_of(1)) == (True, None, -1)
+    source._process.stdin.write("go on\n")
+    source._process.stdin.flush()
+    wait_until(lambda: source._fresh is not None, "the answer")
+    assert source.busy
+    assert len(source.arrived(store)) == 1
+    assert (source.busy, store.index_of(1)) == (False, 1)
+    source.close()
 
 
 def test_changes_are_told_in_order_and_a_refusal_is_a_complaint(tools, tmp_path):

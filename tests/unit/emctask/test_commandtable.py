@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from emctask import handlers
-from emctask.commandtable import MANUAL, MDI, REFUSALS, RULES, Refused, Rule, check, never
+from emctask.commandtable import MANUAL, REFUSALS, RULES, Refused, Rule, check, never
 from nml.emc import EMC_TASK_ABORT, EMC_TASK_PLAN_EXECUTE, EMC_TASK_SET_STATE
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
@@ -48,7 +48,6 @@ def test_no_command_is_both_handled_and_refused():
         (everywhere(on=True), State.ESTOP_RESET, Mode.MDI, Interp.IDLE, "until the machine is out of E-stop"),
         (everywhere(modes=MANUAL), State.ON, Mode.MDI, Interp.IDLE, r"can't do that \(.*EXECUTE:509\) in MDI mode"),
         (everywhere(modes=MANUAL), State.ON, Mode.AUTO, Interp.IDLE, "in auto mode with the interpreter idle"),
-        (everywhere(modes=MDI), State.ON, Mode.MANUAL, Interp.IDLE, "Must be in MDI mode to issue MDI command"),
         (everywhere(idle=True), State.ON, Mode.AUTO, Interp.PAUSED, "in auto mode with the interpreter paused"),
     ],
 )
