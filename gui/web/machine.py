@@ -28,6 +28,7 @@ from nml import clock
 LOOK = 0.25  # s between looks whether the server ends
 FAST = 0.004  # s between looks at the status while an order or a jog is under way
 BRISK = 0.02  # s between statuses that are passed on meanwhile
+LONG_EVERY = 4  # statuses from one with the long arrays of inputs and outputs to the next
 SERIALS_KEPT = 512
 SILENT_AFTER = 1.5  # s without a new status
 PATIENCE = 600.0  # s that an order may take
@@ -101,6 +102,7 @@ class Machine:
     def _follow(self) -> None:
         """Thread: pass on each status, at most one a cycle; while an order is under way look oftener."""
         status, shown, heard, ends = self._status, float("-inf"), clock.host_now(), (0, 0)
+        looks = -1
         while not self._over.is_set():
             try:
                 fresh = status.wait(LOOK)
@@ -118,7 +120,8 @@ class Machine:
             before, ends = ends, (status.echo_serial_number, status.state)
             if now - shown >= self._period or (self._hurry.is_set() and ends != before):
                 shown = now
-                self._tell({"machine": "ok", **readout.read(status)}, ends)
+                looks += 1
+                self._tell({"machine": "ok", **readout.read(status, looks % LONG_EVERY == 0)}, ends)
             else:
                 self._tell(None, ends)
             self._pause(shown + self._cycle - clock.host_now())

@@ -28,17 +28,19 @@ OF_JOINTS = {
     "joint_position": "output",
     "joint_actual_position": "input",
 }
+LIMIT_BITS = (("min_hard_limit", 1), ("max_hard_limit", 2), ("min_soft_limit", 4), ("max_soft_limit", 8))
 NO_CODE = -1
 
 
-def read(status: linuxcnc.stat) -> dict[str, Any]:
-    """The map for one status."""
+def read(status: linuxcnc.stat, long: bool = True) -> dict[str, Any]:
+    """The map for one status; without ``long`` the long arrays of inputs and outputs are left out."""
     values: dict[str, Any] = {name: _plain(getattr(status, name)) for name in PLAIN}
     values |= {name: bool(getattr(status, name)) for name in FLAGS}
-    values |= {name: list(getattr(status, name)) for name in LONG}
+    if long:
+        values |= {name: list(getattr(status, name)) for name in LONG}
     joints = status.joint[: status.joints]
     values |= {name: [joint[key] for joint in joints] for name, key in OF_JOINTS.items()}
-    values["limit"] = list(status.limit[: status.joints])
+    values["limit"] = [sum(bit for name, bit in LIMIT_BITS if joint[name]) for joint in joints]
     values["all_homed"] = bool(joints) and all(joint["homed"] for joint in joints)
     values["spindle"] = [dict(spindle) for spindle in status.spindle[: status.spindles]]
     values["gcode_text"] = [
