@@ -3,6 +3,8 @@
 import asyncio
 import http.client
 import json
+import shutil
+import ssl
 import subprocess
 import sys
 
@@ -263,3 +265,23 @@ def test_tokens_that_others_can_read_or_guess_are_refused(tmp_path):
 
 def test_the_machines_health_needs_no_token(guarded):
     wait_until(lambda: json.loads(ask(guarded, "GET", "/health")[2]) == {"machine": "ok"}, "healthy")
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_with_a_certificate_everything_is_encrypted(tmp_path):
+    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=localhost"]
+    command += ["-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1"]
+    subprocess.run([*command, "-keyout", "key.pem", "-out", "cert.pem"], cwd=tmp_path, check=True, capture_output=True)
+    tokens = tmp_path / "tokens"
+    tokens.write_text(f"reader {READER}\n")
+    tokens.chmod(0o600)
+    extra = "[WEB]\nTOKEN_FILE = tokens\nTLS_CERTIFICATE = cert.pem\nTLS_KEY = key.pem"
+    with web_mill(tmp_path, extra=extra) as (run, port):
+        trusted = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
+        connection = http.client.HTTPSConnection("localhost", port, timeout=20, context=trusted)
+        connection.request("GET", "/health")
+        assert json.loads(connection.getresponse().read()) == {"machine": "ok"}
+        with pytest.raises((http.client.HTTPException, OSError)):
+            ask(port, "GET", "/health")
+        run.stop()
+        assert f"https://127.0.0.1:{port}/" in run.output
