@@ -8,6 +8,7 @@ and the planner's servo periods are run as fast as they go: so the time is the m
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from emcmot.forecast_canon import ForecastCanon
+from emcmot.forecast_error import path_error
 from nml.errors import ConfigError, InterpError
 from nml.inifile import IniFile
 from rs274ngc import tooltable
@@ -37,6 +39,7 @@ class Machine:
 
     velocities: tuple[float, ...]
     accelerations: tuple[float, ...]
+    jerks: tuple[float, ...]  # 0: no limit
     start: tuple[float, ...]
     axis_mask: int
     period: float
@@ -50,7 +53,9 @@ class Machine:
         letters = [letter for letter in (ini.find("TRAJ", "COORDINATES") or "").upper() if letter in AXES]
         if not letters:
             raise ini.error("TRAJ", "COORDINATES", "missing; the letters of the axes are needed, like X Y Z")
-        velocities, accelerations, start = [UNLIMITED] * 9, [UNLIMITED] * 9, [0.0] * 9
+        velocities, accelerations, jerks, start = [UNLIMITED] * 9, [UNLIMITED] * 9, [0.0] * 9, [0.0] * 9
+        limits_jerk = ini.integer("TRAJ", "PLANNER_TYPE", 0) == 1
+        path_jerk = ini.real("TRAJ", "MAX_LINEAR_JERK", 0.0, minimum=0.0)
         for joint, letter in enumerate(letters):
             axis, section = AXES.index(letter), f"AXIS_{letter}"
             linear = "LINEAR" if axis < 3 or axis > 5 else "ANGULAR"
@@ -58,10 +63,14 @@ class Machine:
             top_a = ini.real("TRAJ", f"MAX_{linear}_ACCELERATION", UNLIMITED)
             velocities[axis] = ini.real(section, "MAX_VELOCITY", min(top_v, UNLIMITED))
             accelerations[axis] = ini.real(section, "MAX_ACCELERATION", min(top_a, UNLIMITED))
+            if limits_jerk:
+                given = [ini.real(part, "MAX_JERK", 0.0, minimum=0.0) for part in (section, f"JOINT_{joint}")]
+                jerks[axis] = min((jerk for jerk in (jerks[axis], path_jerk, *given) if jerk > 0.0), default=0.0)
             start[axis] = ini.real(f"JOINT_{joint}", "HOME", 0.0)
         return cls(
             velocities=tuple(velocities),
             accelerations=tuple(accelerations),
+            jerks=tuple(jerks),
             start=tuple(start),
             axis_mask=sum(1 << AXES.index(letter) for letter in set(letters)),
             period=ini.real("EMCMOT", "SERVO_PERIOD", 1e6, minimum=1e3) * 1e-9,
@@ -79,10 +88,13 @@ class Forecast:
     sections: list[tuple[int, str, float, float]]  # tool, operation, motion, pauses
     line_seconds: dict[int, float]
     line_lost: dict[int, float]
+    line_reason: dict[int, str]  # what cost a line most
+    path_error: float | None  # lu: largest distance from the program's path, where a trace was asked for
     reasons: list[tuple[str, float]]
     moves: int
     positions: NDArray[np.float64]  # of every servo period, where a trace was asked for
     lines: NDArray[np.int64]  # program line of every servo period
+    run: list[tuple[int, float]]  # program lines in the order of their execution, and when each ends
     start: tuple[float, ...]
     period: float
 
@@ -120,7 +132,7 @@ def summarise(canon: ForecastCanon, machine: Machine) -> Forecast:
     motion = np.bincount(sections, weights=times, minlength=len(canon.sections))
     pauses = canon.pauses
     positions, ids = canon.trace()
-    names = [f"{limit} of {axis}" for limit in ("acceleration", "velocity") for axis in AXES] + ["corners, curves"]
+    names = reason_names()
     reasons = sorted(zip(names, canon.reasons(), strict=True), key=lambda item: -item[1])
     return Forecast(
         seconds=canon.periods * canon.period + sum(pauses),
@@ -131,13 +143,37 @@ def summarise(canon: ForecastCanon, machine: Machine) -> Forecast:
         ],
         line_seconds=by_line(lines, times),
         line_lost=by_line(lines, lost),
+        line_reason=reasons_of_lines(lines, lost, canon.move_reasons(), names),
+        path_error=path_error(canon.moves(), machine.start, positions, ids) if len(positions) else None,
         reasons=[(name, seconds) for name, seconds in reasons if seconds >= 0.001],
         moves=len(lines) - 1,
         positions=positions,
         lines=lines[ids],
         start=machine.start,
         period=canon.period,
+        run=run_of(lines, times),
     )
+
+
+def reason_names() -> list[str]:
+    """What a limit that was reached is called."""
+    limits = ("jerk", "acceleration", "velocity")
+    return [f"{limit} of {axis}" for limit in limits for axis in AXES] + ["corners, curves"]
+
+
+def reasons_of_lines(
+    lines: NDArray[np.int64], lost: NDArray[np.float64], reasons: NDArray[np.int8], names: list[str]
+) -> dict[int, str]:
+    """For each line that lost time, what cost its slowest move most."""
+    order = np.argsort(lost)
+    return {int(lines[k]): names[reasons[k]] for k in order if lost[k] > 0.0}
+
+
+def run_of(lines: NDArray[np.int64], times: NDArray[np.float64]) -> list[tuple[int, float]]:
+    """Lines in the order of their moves, neighbours of one line as one, with the time of motion at the end of each."""
+    ends = np.cumsum(times)
+    last = np.flatnonzero(np.append(np.diff(lines) != 0, len(lines) > 0))
+    return [(int(lines[k]), round(float(ends[k]), 4)) for k in last if lines[k]]
 
 
 def by_line(lines: NDArray[np.int64], seconds: NDArray[np.float64]) -> dict[int, float]:
@@ -164,10 +200,33 @@ def report(result: Forecast) -> str:
         out += [f"  {seconds:10.3f} s  {name}" for name, seconds in result.reasons[:SHOWN_LINES]]
         out += ["", "lines that lost most:"]
         out += [
-            f"  line {line:>7}  {seconds:8.3f} s of {result.line_seconds[line]:.3f} s"
+            f"  line {line:>7}  {seconds:8.3f} s of {result.line_seconds[line]:.3f} s  {result.line_reason[line]}"
             for line, seconds in list(result.line_lost.items())[:SHOWN_LINES]
         ]
+    if result.path_error is not None:
+        out += ["", f"largest distance from the program's path: {result.path_error:.6f}"]
     return "\n".join(out)
+
+
+def as_json(result: Forecast, points: int) -> str:
+    """The forecast for programs; the run of lines is thinned out to so many points."""
+    run = result.run
+    if len(run) > points:
+        run = [run[k] for k in np.unique(np.linspace(0, len(run) - 1, points).astype(int))]
+    return json.dumps(
+        {
+            "seconds": result.seconds,
+            "moves": result.moves,
+            "sections": result.sections,
+            "lines": run,
+            "reasons": result.reasons,
+            "slow_lines": [
+                [line, lost, result.line_seconds[line], result.line_reason.get(line, "")]
+                for line, lost in list(result.line_lost.items())[:SHOWN_LINES]
+            ],
+            "path_error": result.path_error,
+        }
+    )
 
 
 def traces(result: Forecast) -> dict[str, NDArray[Any]]:
@@ -210,6 +269,9 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("program", metavar="FILE", type=Path, help="G-code program")
     options.add_argument("--toolchange", type=float, default=0.0, metavar="S", help="seconds that a tool change takes")
     options.add_argument("--trace", type=Path, metavar="FILE.npz", help="write positions and derivatives")
+    options.add_argument("--path-error", action="store_true", help="say how far the tool gets from the program's path")
+    options.add_argument("--json", metavar="FILE", help="write the forecast as JSON; - : to standard output, alone")
+    options.add_argument("--json-points", type=int, default=20000, metavar="N", help="lines in it at most (20000)")
     options.add_argument("--png", type=Path, metavar="FILE.png", help="draw them")
     return options
 
@@ -221,9 +283,13 @@ def main(arguments: list[str] | None = None) -> int:
         ini = IniFile(options.ini)
         table = ini.path("EMCIO", "TOOL_TABLE", None)
         tools = tooltable.load(table) if table else []
-        traced = bool(options.trace or options.png)
+        traced = bool(options.trace or options.png or options.path_error)
         result = forecast(ini, options.program, Machine.from_ini(ini), tools, options.toolchange, traced)
-        print(report(result))
+        if options.json:
+            text = as_json(result, options.json_points)
+            sys.stdout.write(text + "\n") if options.json == "-" else Path(options.json).write_text(text)
+        if options.json != "-":
+            print(report(result))
         if options.trace:
             np.savez_compressed(options.trace, **traces(result))  # type: ignore[arg-type]
         if options.png:

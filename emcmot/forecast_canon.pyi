@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from emcmot.forecast import Machine
 from rs274ngc.moves import MoveCanon
 
+Shape = tuple[tuple[float, ...], tuple[tuple[float, ...], tuple[float, ...], int] | None]
+
 class ForecastCanon(MoveCanon):
     period: float
     periods: int
@@ -16,7 +18,6 @@ class ForecastCanon(MoveCanon):
     move_section: list[int]
     sections: list[tuple[int, str]]
     pauses: list[float]
-    ends: list[tuple[float, ...]]
     def __init__(
         self, machine: Machine, tools: Sequence[Any] = (), tool_change_s: float = 0.0, trace: bool = False
     ) -> None: ...
@@ -24,3 +25,5 @@ class ForecastCanon(MoveCanon):
     def trace(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
     def times(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def reasons(self) -> list[float]: ...
+    def move_reasons(self) -> NDArray[np.int8]: ...
+    def moves(self) -> list[Shape]: ...

@@ -7,8 +7,8 @@ of their move, tools are changed in a given time. ``emcmot.forecast`` drives it 
 
 import numpy as np
 
-from libc.math cimport fabs, fmax, fmin
-from libc.stdint cimport int64_t
+from libc.math cimport INFINITY, fabs, fmax, fmin
+from libc.stdint cimport int8_t, int64_t
 from libc.string cimport memset
 
 from emcmot.tp.tp cimport *
@@ -26,11 +26,12 @@ cdef enum:
     FEED = 2
     ARC = 3
     PROBING = 5
-    REASONS = 2 * AXIS_COUNT + 1 # acceleration of each axis, velocity of each axis, the path itself
+    REASONS = 3 * AXIS_COUNT + 1 # jerk of each axis, acceleration, velocity, the path itself
 
 OF_INTERPRETER = "interpreter:"  # comments that are none of the program
 
 cdef double SLOW = 0.98          # share of the programmed speed below which a period counts as slow
+cdef double AT_JERK = 0.45       # share of a jerk limit from which it counts: see emcmot.tp.smooth
 cdef double AT_LIMIT = 0.97      # share of a limit from which it counts as reached
 
 
@@ -45,10 +46,16 @@ cdef class ForecastCanon(MoveCanon):
     cdef bint keep_trace
     cdef double[AXIS_COUNT] amax
     cdef double[AXIS_COUNT] vmax
+    cdef double[AXIS_COUNT] jmax
     cdef double[AXIS_COUNT] last_vel
+    cdef double[AXIS_COUNT] last_acc
     cdef double[::1] move_time
     cdef double[::1] move_lost
-    cdef readonly list move_line, move_section, sections, pauses, ends
+    cdef int8_t[::1] move_reason
+    cdef double[REASONS] lost_now
+    cdef int64_t judged              # the move that `lost_now` is of
+    cdef readonly list move_line, move_section, sections, pauses
+    cdef list shapes
     cdef object chunk, positions_out, ids_out
     cdef double[:, ::1] chunk_positions
     cdef int64_t[::1] chunk_ids
@@ -83,11 +90,14 @@ cdef class ForecastCanon(MoveCanon):
         for axis in range(AXIS_COUNT):
             self.vmax[axis] = machine.velocities[axis]
             self.amax[axis] = machine.accelerations[axis]
-            tp_set_axis_limits(self.tp, axis, self.vmax[axis], self.amax[axis], 0.0)
+            self.jmax[axis] = machine.jerks[axis] if machine.jerks[axis] > 0.0 else INFINITY
+            tp_set_axis_limits(self.tp, axis, self.vmax[axis], self.amax[axis], machine.jerks[axis])
+        tp_set_planner_type(self.tp, any(machine.jerks))
         tp_set_vel_limit(self.tp, machine.max_linear_velocity)
         self.move_time = np.zeros(4096)
         self.move_lost = np.zeros(4096)
-        self.move_line, self.move_section, self.sections, self.pauses, self.ends = [0], [0], [], [], []
+        self.move_reason = np.zeros(4096, dtype=np.int8)
+        self.move_line, self.move_section, self.sections, self.pauses, self.shapes = [0], [0], [], [], []
         self.positions_out, self.ids_out = [], []
         self.operation = ""
         self.new_section()
@@ -133,8 +143,16 @@ cdef class ForecastCanon(MoveCanon):
         count = len(self.move_line)
         return np.asarray(self.move_time)[:count], np.asarray(self.move_lost)[:count]
 
+    def move_reasons(self):
+        """What cost each move most, as an index into `reasons`."""
+        return np.asarray(self.move_reason)[: len(self.move_line)]
+
+    def moves(self):
+        """Shapes of the moves from the first one on, where a trace is kept: end, and center, normal and turns of arcs."""
+        return self.shapes
+
     def reasons(self):
-        """Seconds lost by reason: acceleration of X to W, velocity of X to W, the speed that corners and curves leave."""
+        """Seconds lost by reason: jerk of X to W, acceleration, velocity, and the speed that corners and curves leave."""
         return [self.lost_by_reason[i] for i in range(REASONS)]
 
     # --- Servo periods
@@ -142,7 +160,7 @@ cdef class ForecastCanon(MoveCanon):
     cdef void cycle(self) noexcept nogil:
         """One servo period, and what it says."""
         cdef double speed, wanted
-        cdef int axis, reason
+        cdef int axis
         if self.direction:
             self.revs += self.direction * self.rpm / 60.0 * self.period
         if self.status.wants_index >= 0:
@@ -161,16 +179,31 @@ cdef class ForecastCanon(MoveCanon):
         self.move_time[self.status.id] += self.period
         wanted = self.status.requested_vel
         if self.status.current_vel < SLOW * wanted:
-            self.move_lost[self.status.id] += self.period * (1.0 - self.status.current_vel / wanted)
-            reason = 2 * AXIS_COUNT
-            for axis in range(AXIS_COUNT):
-                if fabs(self.status.vel[axis]) > AT_LIMIT * self.vmax[axis]:
-                    reason = AXIS_COUNT + axis
-                elif fabs(self.status.vel[axis] - self.last_vel[axis]) > AT_LIMIT * self.amax[axis] * self.period:
-                    reason = axis
-            self.lost_by_reason[reason] += self.period * (1.0 - self.status.current_vel / wanted)
+            self.blame(self.period * (1.0 - self.status.current_vel / wanted))
         for axis in range(AXIS_COUNT):
+            self.last_acc[axis] = self.status.vel[axis] - self.last_vel[axis]
             self.last_vel[axis] = self.status.vel[axis]
+
+    cdef void blame(self, double lost) noexcept nogil:
+        """Count seconds lost in this period for its move, and for what was at its limit."""
+        cdef int axis, reason = 3 * AXIS_COUNT
+        cdef double change
+        for axis in range(AXIS_COUNT):
+            change = self.status.vel[axis] - self.last_vel[axis]
+            if fabs(self.status.vel[axis]) > AT_LIMIT * self.vmax[axis]:
+                reason = 2 * AXIS_COUNT + axis
+            elif fabs(change) > AT_LIMIT * self.amax[axis] * self.period:
+                reason = AXIS_COUNT + axis
+            elif fabs(change - self.last_acc[axis]) > AT_JERK * self.jmax[axis] * self.period * self.period:
+                reason = axis
+        if self.judged != self.status.id:
+            memset(self.lost_now, 0, sizeof(self.lost_now))
+            self.judged = self.status.id
+        self.lost_now[reason] += lost
+        self.lost_by_reason[reason] += lost
+        self.move_lost[self.status.id] += lost
+        if self.lost_now[reason] >= self.lost_now[self.move_reason[self.status.id]]:
+            self.move_reason[self.status.id] = reason
 
     cdef record(self):
         cdef int axis
@@ -201,6 +234,7 @@ cdef class ForecastCanon(MoveCanon):
         if count + 1 >= self.move_time.shape[0]:
             self.move_time = np.concatenate([self.move_time, np.zeros(count + 1)])
             self.move_lost = np.concatenate([self.move_lost, np.zeros(count + 1)])
+            self.move_reason = np.concatenate([self.move_reason, np.zeros(count + 1, dtype=np.int8)])
         seg.id = count
         result = tp_add(self.tp, seg, NULL)
         if result == TP_FULL:
@@ -210,7 +244,9 @@ cdef class ForecastCanon(MoveCanon):
             self.move_line.append(line)
             self.move_section.append(self.section)
             if self.keep_trace:
-                self.ends.append(tuple([seg.end[i] for i in range(AXIS_COUNT)]))
+                end = tuple([seg.end[i] for i in range(AXIS_COUNT)])
+                arc = (tuple(seg.center), tuple(seg.normal), seg.turn) if seg.kind == TP_ARC else None
+                self.shapes.append((end, arc))
 
     cdef void begin(self, TpSegment* seg, double x, double y, double z, double a, double b, double c, double u, double v, double w, double vel, double ini_maxvel, double acc) noexcept:
         memset(seg, 0, sizeof(TpSegment))

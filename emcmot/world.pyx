@@ -1,15 +1,15 @@
 """Between axes and joints: kinematics, soft limits in Cartesian space, and the planner's axis limits."""
 
-from libc.math cimport fabs, isfinite, sqrt
+from libc.math cimport fabs, fmin, isfinite, sqrt
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MAX_JOINTS
 from emcmot.free_planner cimport fastest_stoppable
 from emcmot.joint cimport command_joint
-from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY, Kinematics
+from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY, KINS_JOINTS, Kinematics
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
-from emcmot.tp.tp cimport tp_set_axis_limits
+from emcmot.tp.tp cimport TpInverse, tp_set_axis_limits, tp_set_joints
 
 from emcmot.layout import same_size
 
@@ -297,10 +297,9 @@ cdef double tighter(double one, double other) noexcept nogil:
 
 
 cdef void refresh_planner_limits(Motion* m) noexcept nogil:
-    """Tell the planner what each axis may do: what its INI section says, and no more than its joints can follow.
+    """What each axis may do: what its INI section says, for jogs no more than its joints can follow.
 
-    An axis without limits of its own takes those of the joint that it is. Where the kinematics is not linear, only such
-    joints are looked after.
+    An axis without limits of its own takes those of the joint that it is. The planner looks after joints by itself.
     """
     cdef double vel[MAX_AXES]
     cdef double acc[MAX_AXES]
@@ -319,6 +318,7 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
             acc[i] = m.joint[n].acc_limit
         if i >= 0:
             jerk[i] = tighter(jerk[i], m.joint[n].jerk_limit)
+    tell_planner(m, vel, acc, jerk)
     for n in range(m.kins.joints):
         joint_of_axes(m, n, row)
         lower(vel, row, m.joint[n].vel_limit)
@@ -326,5 +326,32 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
     for i in range(MAX_AXES):
         m.axis[i].vel_net = vel[i]
         m.axis[i].acc_net = acc[i]
-        if vel[i] > 0.0 and acc[i] > 0.0:
-            tp_set_axis_limits(m.tp, i, vel[i], acc[i], jerk[i])
+
+
+cdef void tell_planner(Motion* m, const double* vel, const double* acc, const double* jerk) noexcept nogil:
+    """Limits of axes and of joints; where each joint is one axis, it lowers that axis's limits, else it is looked after itself."""
+    cdef double joint_vel[KINS_JOINTS]
+    cdef double joint_acc[KINS_JOINTS]
+    cdef double joint_jerk[KINS_JOINTS]
+    cdef double axis_vel[MAX_AXES]
+    cdef double axis_acc[MAX_AXES]
+    cdef int all_axes = 1, n, i
+    for i in range(MAX_AXES):
+        axis_vel[i] = vel[i]
+        axis_acc[i] = acc[i]
+    for n in range(m.kins.joints):
+        joint_vel[n] = m.joint[n].vel_limit
+        joint_acc[n] = m.joint[n].acc_limit
+        joint_jerk[n] = m.joint[n].jerk_limit
+        i = m.kins.axis_of_joint[n]
+        if i < 0:
+            all_axes = 0
+            continue
+        axis_vel[i] = fmin(axis_vel[i], joint_vel[n]) if joint_vel[n] > 0.0 else axis_vel[i]
+        axis_acc[i] = fmin(axis_acc[i], joint_acc[n]) if joint_acc[n] > 0.0 else axis_acc[i]
+    tp_set_joints(
+        m.tp, NULL if all_axes else <TpInverse>m.kins.inverse, m.kins, m.kins.joints, joint_vel, joint_acc, joint_jerk
+    )
+    for i in range(MAX_AXES):
+        if axis_vel[i] > 0.0 and axis_acc[i] > 0.0:
+            tp_set_axis_limits(m.tp, i, axis_vel[i], axis_acc[i], jerk[i])

@@ -8,17 +8,19 @@ asks for less speed, it is the smallest. Both keep the state in the set from whi
 
 from libc.math cimport fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
-from libc.string cimport memcpy
 
 from emcmot.tp.corner cimport blend_position
-from emcmot.tp.follow cimport count_way, follows_position, follows_velocity, spindle_speed, waits_for_index
+from emcmot.tp.follow cimport count_way
 from emcmot.tp.geometry cimport position
+from emcmot.tp.jerk cimport forget_stretches, move_smoothly
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
-from emcmot.tp.model cimport AXES, CHAIN_NONE, CHAIN_WAITING, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, extend, feed_cap, feed_scale, refresh, sweep_caps
+from emcmot.tp.model cimport AXES, CHAIN_NONE, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
+from emcmot.tp.path cimport exit_limit, extend, refresh, sweep_caps
+from emcmot.tp.progress cimport holding, next_span, reached, run_tap, target_w, waiting
 from emcmot.tp.reverse cimport turn_forward
-from emcmot.tp.tap cimport at_rest, tap
-from emcmot.tp.tp cimport TP_FH_ENABLED, TP_TAP
+from emcmot.tp.smooth cimport command_planned, command_smoothed
+from emcmot.tp.tap cimport at_rest
+from emcmot.tp.tp cimport TP_TAP
 
 cdef enum:
     PHASES_PER_PERIOD = 5000    # bound of the work of one period
@@ -45,71 +47,6 @@ cdef inline Segment* _seg(const TpState* tp, int64_t index) noexcept nogil:
     return &tp.segs[index & tp.seg_mask]
 
 
-cdef inline double _reached(const TpState* tp, const Span* span) noexcept nogil:
-    """Parameter of the segment, or of the blend, where the machine is on the active span."""
-    return span.u0 + (span.h - tp.u if tp.reversing else tp.u)
-
-
-cdef int64_t current_segment(const TpState* tp) noexcept nogil:
-    """Index of the executing segment; seg_tail when there is none. A blend is half the one, half the other."""
-    cdef const Span* span
-    if tp.active >= tp.span_tail:
-        return tp.seg_built
-    span = _span(tp, tp.active)
-    return span.seg - (span.kind == SPAN_BLEND and _reached(tp, span) < span.trim)
-
-
-cdef int64_t current_raw(const TpState* tp) noexcept nogil:
-    """Index of the executing programmed move; raw_next when there is none. In a chord, by the share of its way."""
-    cdef const Segment* seg
-    cdef const Span* span
-    cdef int64_t index
-    cdef double way = 0.0, reached
-    cdef int k
-    if tp.active >= tp.span_tail:
-        return tp.raw_next
-    index = current_segment(tp)
-    seg = _seg(tp, index)
-    if seg.raw_count == 1:
-        return seg.raw_first
-    span = _span(tp, tp.active)
-    reached = _reached(tp, span)
-    if span.kind == SPAN_BLEND:
-        reached += seg.length - span.trim if index < span.seg else -span.trim
-    for k in range(seg.raw_count):
-        way += tp.raws[(seg.raw_first + k) & tp.raw_mask].length
-        if way > reached:
-            return seg.raw_first + k
-    return seg.raw_first + seg.raw_count - 1
-
-
-cdef int64_t current_id(const TpState* tp) noexcept nogil:
-    """Motion id of the executing move, 0 when there is none."""
-    return tp.raws[current_raw(tp) & tp.raw_mask].id if tp.active < tp.span_tail else 0
-
-
-cdef int _holding(const TpState* tp) noexcept nogil:
-    cdef const Segment* seg = _seg(tp, current_segment(tp))
-    if tp.aborting:
-        return 1
-    if follows_position(seg) and tp.chain > CHAIN_WAITING:       # a thread goes on until its end
-        return 0
-    return tp.paused or tp.feed_inhibit or (tp.feed_hold and seg.enables & TP_FH_ENABLED)
-
-
-cdef double _target(TpState* tp) noexcept nogil:
-    """The w that the active span should have now: hard limits, feed and overrides, holds, the spindle that it follows."""
-    cdef const Segment* seg = _seg(tp, current_segment(tp))
-    cdef double target, v
-    if _holding(tp):
-        return 0.0
-    target = feed_cap(tp, tp.active)
-    if follows_position(seg) or follows_velocity(seg):
-        v = spindle_speed(tp, seg) * (feed_scale(tp, seg) if seg.sync_velocity else 1.0)
-        target = fmin(target, v * v)
-    return target
-
-
 cdef void advance(TpState* tp) noexcept nogil:
     """One servo period: build and look ahead as far as needed, move by dt, publish position and velocity."""
     cdef double before[AXES]
@@ -119,14 +56,25 @@ cdef void advance(TpState* tp) noexcept nogil:
     tp.lead_known = 0
     if not tp.reversing:
         extend(tp)
-    sweep_caps(tp)
-    if tp.active < tp.span_tail:
+    if tp.smooth:
+        _advance_smoothly(tp)
+    elif tp.active < tp.span_tail:
+        sweep_caps(tp)
         _move(tp, tp.dt)
-        _publish(tp)
+        _place(tp)
+        command_planned(tp)
     if tp.aborting and at_rest(tp):
         _drop_queue(tp)
     for i in range(AXES):
         tp.vel[i] = (tp.pos[i] - before[i]) / tp.dt
+
+
+cdef void _advance_smoothly(TpState* tp) noexcept nogil:
+    if tp.active < tp.span_tail:
+        move_smoothly(tp)
+        _place(tp)
+    if tp.lag > 0 or tp.active < tp.span_tail:
+        command_smoothed(tp)
 
 
 cdef void _drop_queue(TpState* tp) noexcept nogil:
@@ -142,26 +90,28 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
     tp.chain = CHAIN_NONE
     tp.tap_phase = TAP_NONE
     tp.u = tp.w = 0.0
+    forget_stretches(tp)
     for i in range(AXES):
         tp.goal[i] = tp.pos[i]
 
 
-cdef void _publish(TpState* tp) noexcept nogil:
+cdef void _place(TpState* tp) noexcept nogil:
+    """Find the planned position."""
     cdef const Span* span
     cdef const Segment* seg
     cdef int i
     if tp.active >= tp.span_tail:
-        position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.pos)
+        position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.planned)
         return
     span = _span(tp, tp.active)
     seg = _seg(tp, span.seg)
     if seg.kind == TP_TAP and tp.tap_phase != TAP_NONE:
         for i in range(AXES):
-            tp.pos[i] = seg.start[i] + seg.rate[i] * tp.tap_s
+            tp.planned[i] = seg.start[i] + seg.rate[i] * tp.tap_s
     elif span.kind == SPAN_BLEND:
-        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, _reached(tp, span), tp.pos)
+        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, reached(tp, span), tp.planned)
     else:
-        position(_seg(tp, span.seg), _reached(tp, span), tp.pos)
+        position(_seg(tp, span.seg), reached(tp, span), tp.planned)
 
 
 cdef void _look_ahead(TpState* tp) noexcept nogil:
@@ -182,16 +132,14 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
     cdef double v, end_v, end_w, time, way
     cdef int count
     for count in range(PHASES_PER_PERIOD):
-        if tp.w == 0.0 and _waiting(tp):
+        if tp.w == 0.0 and waiting(tp):
             return
         span = _span(tp, tp.active)
         if _seg(tp, span.seg).kind == TP_TAP and tp.u == 0.0:
-            if tap(tp, _seg(tp, span.seg)):
-                memcpy(_seg(tp, span.seg).end, _seg(tp, span.seg).start, sizeof(span.dq0))
-                tp.u = span.h
+            run_tap(tp, span)
             return
         if tp.u >= span.h - NO_WAY:
-            if not _next_span(tp, span):
+            if not next_span(tp, span):
                 return
             continue
         _look_ahead(tp)
@@ -221,51 +169,13 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
         return
 
 
-cdef int _waiting(TpState* tp) noexcept nogil:
-    """Whether the current segment may not start yet; once started it is not asked again."""
-    cdef int64_t index = current_segment(tp)
-    cdef const Segment* seg = _seg(tp, index)
-    if index < tp.started:
-        return 0
-    if seg.wait_spindles & ~tp.at_speed or (seg.indexer >= 0 and not tp.unlocked):
-        return 1
-    if follows_position(seg) and waits_for_index(tp, seg):
-        return 1
-    tp.started = index + 1
-    return 0
-
-
-cdef int _next_span(TpState* tp, Span* span) noexcept nogil:
-    """Go on to the next span; 0 where the path ends."""
-    cdef const Span* following
-    tp.w = 0.0 if span.stop else tp.w * span.ratio * span.ratio
-    if tp.reversing and tp.active + 1 >= tp.span_tail:
-        return 0
-    if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.raw_next < tp.raw_tail or tp.seg_built < tp.seg_tail):
-        tp.w = 0.0                                   # at the end of what is built so far, but not of the queue
-        return 0
-    tp.active += 1
-    tp.u = 0.0
-    if tp.active >= tp.span_tail:
-        tp.w = 0.0
-        span.stop = 1
-        tp.seg_head = tp.seg_built
-        return 0
-    following = _span(tp, tp.active)
-    tp.seg_head = following.seg - (following.kind == SPAN_BLEND)
-    if tp.stepping and current_id(tp) != tp.step_id:
-        tp.stepping = 0
-        tp.paused = 1
-    return 1
-
-
 cdef Phase _line_phase(TpState* tp, const Span* span) noexcept nogil:
     """Accelerate to the feed, hold it, brake for what follows: whichever is due now."""
     cdef Phase phase
     cdef double x = span.h - tp.u, a = span.acc
     cdef double limit = exit_limit(tp, tp.active)
     cdef double braking = limit + 2.0 * a * x        # w from which full braking arrives at the limit
-    cdef double target = _target(tp)
+    cdef double target = target_w(tp)
     if tp.w > target * (1.0 + SAME_SPEED):
         phase.acceleration = -a
         phase.way = fmin(x, (tp.w - target) / (2.0 * a))
@@ -296,7 +206,7 @@ cdef Phase _curve_phase(TpState* tp, const Span* span) noexcept nogil:
         low = fmin(low, tp.held)
         high = fmax(high, tp.held)
     phase.way = x
-    if _holding(tp):
+    if holding(tp):
         tp.held_span = -1
         phase.acceleration = hardest_stop(span, tp.amax, tp.u, tp.w)
         if tp.w + 2.0 * x * phase.acceleration <= 0.0:
@@ -306,7 +216,7 @@ cdef Phase _curve_phase(TpState* tp, const Span* span) noexcept nogil:
             tp.held = phase.acceleration
             tp.held_span = tp.active
         return phase
-    target = _target(tp)
+    target = target_w(tp)
     phase.acceleration = fmax(low, fmin(high, (fmin(limit, target) - tp.w) / (2.0 * x)))
     tp.held = phase.acceleration
     tp.held_span = tp.active

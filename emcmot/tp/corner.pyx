@@ -12,6 +12,7 @@ from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 from emcmot.tp.follow cimport follows_position
 from emcmot.tp.geometry cimport derivatives, position
 from emcmot.tp.model cimport AXES, Segment, TpState
+from emcmot.tp.smooth cimport blend_share
 from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND, TP_TERM_STOP
 
 cdef enum:
@@ -60,12 +61,12 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     if b.wait_spindles or b.indexer >= 0 or (follows_position(b) and not follows_position(a)):
         corner.stop = 1
         return corner
-    if a.kind == TP_TAP or b.kind == TP_TAP:
+    if a.kind == TP_TAP or b.kind == TP_TAP or (tp.smooth and a.unit != b.unit):
         corner.stop = 1
         return corner
     if not corner.stop:
         return corner
-    tolerance = _tolerance(a, b, sharpness)
+    tolerance = _tolerance(a, b, sharpness) * blend_share(tp)
     if tolerance == 0.0:
         return corner
     wanted = _trim_for_speed(tp, a, b, corner.ratio, jump)

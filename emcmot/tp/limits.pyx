@@ -9,10 +9,10 @@ some speed at the end can be reached are an interval [0, largest].
 
 from libc.math cimport INFINITY, fabs, fmax, fmin
 
-from emcmot.tp.model cimport SPAN_LINE, Span
+from emcmot.tp.model cimport LIMITED, SPAN_LINE, Span
 
 cdef enum:
-    MAX_ROWS = 20                # two for each axis, and the segment's own limit of d2u/dt2
+    MAX_ROWS = 2 * LIMITED + 2   # two for each axis and joint, and the segment's own limit of d2u/dt2
 
 cdef double ROUNDING = 1.0 + 1e-9
 cdef double FLAT = 1e-9          # relative weight of w0 below which a row limits w1 only

@@ -12,10 +12,14 @@ Shared by geometry, limits, build, advance and tp; nothing outside this folder s
 
 from libc.stdint cimport int64_t
 
+from emcmot.tp.joint_map cimport TP_JOINTS, TpInverse
 from emcmot.tp.outputs cimport TpIo
 
 cdef enum:
     AXES = 9
+    LIMITED = AXES + TP_JOINTS   # what has limits: the axes, and the joints where they are not the axes
+    STRETCHES = 64               # of the path ahead, in jerk-limited motion
+    WINDOW = 64                  # periods that smoothing averages over at most
     BACK_RING = 512              # spans that a reverse run can go back
 
 cdef enum FeedUnit:          # which axes the length of a segment is measured along
@@ -25,7 +29,7 @@ cdef enum FeedUnit:          # which axes the length of a segment is measured al
 
 cdef enum SpanKind:
     SPAN_LINE = 1            # part of a straight move: constant limits, w free within them
-    SPAN_ARC = 2             # part of an arc, short enough for linear interpolation of its derivatives
+    SPAN_CURVE = 2           # part of a move whose derivatives change: short enough for their linear interpolation
     SPAN_BLEND = 3           # part of the corner between segment `seg - 1` and segment `seg`
 
 cdef enum Chain:             # position-synchronised moves one after the other
@@ -81,29 +85,45 @@ ctypedef struct Segment:
 ctypedef struct Span:
     int kind                 # SpanKind
     int stop                 # non-zero: the end must be reached at rest
-    int n                    # axes that move here
-    int axis[AXES]
+    int n                    # axes and joints that move here
+    int axis[LIMITED]        # which: joint k counts as axis 9 + k
     int64_t seg              # segment that it is part of; a blend belongs to the later one
     double u0                # parameter at the start, of the segment or of the blend
     double h                 # length in u
     double trim              # blends: u of the earlier segment that the blend takes; the blend's u runs to 2 trim
     double ratio             # du of the next span per du of this one, where they join
-    double cap               # hard limit of w here: axis velocities, vel_max
+    double cap               # hard limit of w here: velocities of axes and joints, vel_max
     double speed             # largest |dq/du| in feed units: the feed cap is w <= (feed / speed)^2
     double speed_before      # blends: the same for the feed of the earlier segment
     double acc               # lines: limit of |d2u/dt2|; else the limit that the segment asks for, or infinity
     double tight             # share of the axis accelerations that interpolation leaves
     double beta              # largest w at the start from which every later limit can be kept
-    double dq0[AXES]         # derivatives by u at both ends, for the n axes of `axis`; not for lines
-    double dq1[AXES]
-    double ddq0[AXES]
-    double ddq1[AXES]
+    double steady            # jerk-limited motion: largest du/dt,
+    double push              # largest |d2u/dt2|
+    double jerk              # and largest |d3u/dt3|
+    double dq0[LIMITED]      # derivatives by u at both ends, for the n axes of `axis`; of lines only where they are asked for
+    double dq1[LIMITED]
+    double ddq0[LIMITED]
+    double ddq1[LIMITED]
+
+ctypedef struct Stretch:     # spans that jerk-limited motion takes as one, with the tightest limits of any of them
+    int64_t last             # span that it ends with
+    int64_t seg              # segment that its feed is that of
+    double length
+    double speed
+    double steady
+    double push
+    double jerk
+    double now               # speed under the overrides of this period
 
 ctypedef struct TpState:
     double dt                # servo period, s
-    double vmax[AXES]
-    double amax[AXES]
-    double jmax[AXES]
+    double vmax[LIMITED]
+    double amax[LIMITED]
+    double jmax[LIMITED]     # infinite: none
+    TpInverse inverse        # NULL: joints are axes
+    const void* kins
+    int joints
     double pos[AXES]         # commanded now
     double vel[AXES]
     double goal[AXES]        # end of the last segment added
@@ -147,6 +167,21 @@ ctypedef struct TpState:
 
     double u                 # parameter within the active span, 0..h
     double w                 # (du/dt)^2
+
+    int limit_jerk           # asked for; takes effect at rest
+    int smooth               # in force
+    double a                 # d2u/dt2, where jerk is limited
+    int hungry               # the path known ahead is too short for the speed that the limits allow
+    int draining             # at rest at the end of a move, until the smoothed position is there as well
+    int window               # periods that the commanded position is the average of
+    int slot                 # of the newest position in `recent`
+    int lag                  # periods until the commanded position has caught up with the planned one
+    double planned[AXES]     # position on the path
+    double recent[WINDOW][AXES]
+    Stretch stretches[STRETCHES]
+    int stretch_head
+    int stretch_count
+    int64_t stretched        # spans before this one are part of a stretch
 
     double held              # d2u/dt2 chosen last, on span `held_span`, to be held to its end
     int64_t held_span

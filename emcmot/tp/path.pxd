@@ -10,3 +10,4 @@ cdef void sweep_caps(TpState* tp) noexcept nogil
 cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil
 cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil
 cdef double feed_scale(const TpState* tp, const Segment* seg) noexcept nogil
+cdef double feed(const TpState* tp, const Segment* seg) noexcept nogil

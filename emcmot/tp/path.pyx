@@ -12,9 +12,11 @@ from libc.stdint cimport int64_t
 from emcmot.tp.corner cimport Corner, blend_derivatives, blend_spans, decide_corner
 from emcmot.tp.follow cimport follows_position, follows_velocity
 from emcmot.tp.geometry cimport derivatives, norm
+from emcmot.tp.joints cimport Curve, add_joints
 from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
-from emcmot.tp.model cimport AXES, SPAN_ARC, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.smooth cimport limit_smooth, smoothing_tolerance
 from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FH_ENABLED, TP_FS_ENABLED
 
 cdef enum:
@@ -23,6 +25,7 @@ cdef enum:
     BUILT_PER_STEP = 4           # and for so many spans
     SPANS_PER_STEP = 64          # spans that one step of building may add
     SPANS_PER_SWEEP = 512        # spans per period that a change of feed caps recomputes
+    JOINT_HALVINGS = 8           # of a span, until
     MOTION_TRAVERSE = 1
 
 cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
@@ -30,6 +33,7 @@ cdef double ARC_SPAN_ANGLE = 0.04
 cdef double ARC_MISS = 1.75      # angle^2 times this: share of an acceleration that interpolation on an arc may miss
 cdef double UNLIKE = 8.0         # accelerations of axes that arcs take into account in full
 cdef double NO_TURN = 1e-6       # share of the curvature below which an axis counts as straight
+cdef double JOINT_MISS = 0.02    # is all that it misses of an acceleration of a joint
 cdef double ARC_BLEND_TIGHT = 0.98  # of blends with arcs, whose derivatives are not quite linear in u
 
 
@@ -53,19 +57,20 @@ cdef double feed_scale(const TpState* tp, const Segment* seg) noexcept nogil:
     return scale
 
 
-cdef double _feed(const TpState* tp, const Segment* seg) noexcept nogil:
-    cdef double feed = seg.vel_max
+cdef double feed(const TpState* tp, const Segment* seg) noexcept nogil:
+    """Feed of a segment under the overrides of now."""
+    cdef double v = seg.vel_max
     if not follows_position(seg) and not follows_velocity(seg):
-        feed = fmin(seg.vel * feed_scale(tp, seg), feed)
-    return fmin(feed, tp.vel_limit) if seg.unit == UNIT_XYZ and tp.vel_limit > 0.0 else feed
+        v = fmin(seg.vel * feed_scale(tp, seg), v)
+    return fmin(v, tp.vel_limit) if seg.unit == UNIT_XYZ and tp.vel_limit > 0.0 else v
 
 
 cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil:
     """Largest w of a span under its hard limits and the feed as overridden now."""
     cdef const Span* span = _span(tp, index)
-    cdef double v = _feed(tp, _seg(tp, span.seg)) / span.speed
+    cdef double v = feed(tp, _seg(tp, span.seg)) / span.speed
     if span.kind == SPAN_BLEND:
-        v = fmin(v, _feed(tp, _seg(tp, span.seg - 1)) / span.speed_before)
+        v = fmin(v, feed(tp, _seg(tp, span.seg - 1)) / span.speed_before)
     return fmin(v * v, span.cap)
 
 
@@ -136,7 +141,7 @@ cdef void extend(TpState* tp) noexcept nogil:
         steps += 1
         last = tp.seg_built - 1
         spans = tp.span_tail
-        urgent = tp.active + 1 >= min(tp.settled, tp.span_tail)
+        urgent = tp.hungry if tp.smooth else tp.active + 1 >= min(tp.settled, tp.span_tail)
         if tp.seg_built == tp.seg_tail:
             steps += take_segment(tp, urgent) // RAWS_PER_STEP
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
@@ -158,7 +163,7 @@ cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
     cdef Segment* a = _seg(tp, last)
     cdef Segment* b = _seg(tp, last + 1)
     cdef Corner corner
-    if tp.body_end >= a.length - NO_WAY:
+    if tp.body_end >= a.length - NO_WAY and not tp.smooth:
         _reopen(tp, last)
         return
     corner = decide_corner(tp, a, b, a.length - fmax(tp.body_end, a.trim_start))
@@ -275,16 +280,33 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     """Spans of the segment itself, from body_end on; long arcs come in several steps."""
     cdef Segment* seg = _seg(tp, index)
     cdef double way = tp.body_goal - tp.body_end, h = way
-    cdef int count, k
+    cdef int kind = SPAN_LINE, count, k
+    if seg.kind == TP_ARC or tp.inverse != NULL:
+        kind = SPAN_CURVE
+        h = fmin(h, fmax(4.0 * tp.dt * seg.vel_max, _braking_way(tp, seg)))
     if seg.kind == TP_ARC:
-        h = fmin(ARC_SPAN_ANGLE / fabs(seg.omega), fmax(4.0 * tp.dt * seg.vel_max, _braking_way(tp, seg)))
+        h = fmin(h, ARC_SPAN_ANGLE / fabs(seg.omega))
+    if tp.inverse != NULL:
+        h = _joint_way(tp, seg, index, h)
     count = <int>fmin(ceil(way / h), SPANS_PER_STEP)
     h = way / fmax(ceil(way / h), 1.0)
     for k in range(count):
-        _limit_body(
-            tp, seg, _new_span(tp, SPAN_ARC if seg.kind == TP_ARC else SPAN_LINE, index, tp.body_end + k * h, h)
-        )
+        _limit_body(tp, seg, _new_span(tp, kind, index, tp.body_end + k * h, h))
     tp.body_end += count * h
+
+
+cdef double _joint_way(TpState* tp, const Segment* seg, int64_t index, double h) noexcept nogil:
+    """Length of spans, `h` at most, in which the joints' derivatives change little."""
+    cdef Span* span
+    cdef int step
+    for step in range(JOINT_HALVINGS):
+        span = _new_span(tp, SPAN_CURVE, index, tp.body_end, h)
+        _limit_body(tp, seg, span)
+        tp.span_tail -= 1
+        if span.tight >= 1.0 - JOINT_MISS:
+            break
+        h *= 0.5
+    return h
 
 
 cdef double _braking_way(const TpState* tp, const Segment* seg) noexcept nogil:
@@ -299,6 +321,7 @@ cdef void _limit_body(TpState* tp, const Segment* seg, Span* span) noexcept nogi
     cdef double ddq0[AXES]
     cdef double ddq1[AXES]
     cdef double angle
+    cdef Curve curve
     cdef int i
     if seg.acc > 0.0:
         span.acc = seg.acc
@@ -308,13 +331,24 @@ cdef void _limit_body(TpState* tp, const Segment* seg, Span* span) noexcept nogi
             if dq0[i] != 0.0:
                 span.acc = fmin(span.acc, tp.amax[i] / fabs(dq0[i]))
         _limit_speed(tp, span, dq0, dq0, seg.vel_max, seg.unit)
+        if tp.smooth:
+            _keep_derivatives(span, dq0, dq0, ddq0, ddq0)
+            limit_smooth(tp, INFINITY, span)
         return
     angle = fabs(seg.omega) * span.h
     span.tight = 1.0 - ARC_MISS * angle * angle
     derivatives(seg, span.u0 + span.h, dq1, ddq1)
     _limit_speed(tp, span, dq0, dq1, seg.vel_max, seg.unit)
     _keep_derivatives(span, dq0, dq1, ddq0, ddq1)
+    if tp.inverse != NULL:
+        curve.before = NULL
+        curve.seg = seg
+        curve.trim = 0.0
+        curve.length = seg.length
+        add_joints(tp, &curve, span)
     _bound_curve(tp, span)
+    if tp.smooth:
+        limit_smooth(tp, smoothing_tolerance(seg), span)
 
 
 cdef void _keep_derivatives(
@@ -366,6 +400,7 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
     cdef Segment* a = _seg(tp, index - 1)
     cdef Segment* b = _seg(tp, index)
     cdef Corner corner
+    cdef Curve curve
     cdef Span* span = NULL
     cdef double dq[2][AXES]
     cdef double ddq[2][AXES]
@@ -376,6 +411,10 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
     corner.ratio = a.exit_ratio
     count = blend_spans(a, b, &corner)
     h = 2.0 * corner.trim / count
+    curve.before = a
+    curve.seg = b
+    curve.trim = corner.trim
+    curve.length = 2.0 * corner.trim
     blend_derivatives(a, b, &corner, 0.0, dq[0], ddq[0])
     for k in range(count):
         now, then = k & 1, 1 - (k & 1)
@@ -388,6 +427,10 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
         span.speed_before = fmax(norm(dq[now], a.unit), norm(dq[then], a.unit))
         span.cap = fmin(span.cap, (a.vel_max / span.speed_before) ** 2)
         _keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
+        if tp.inverse != NULL:
+            add_joints(tp, &curve, span)
         if span.tight < 1.0:
             _bound_curve(tp, span)
+        if tp.smooth:
+            limit_smooth(tp, fmin(smoothing_tolerance(a), smoothing_tolerance(b)), span)
     span.ratio = corner.ratio

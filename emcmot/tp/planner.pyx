@@ -46,6 +46,10 @@ cdef class Planner:
         if tp_set_axis_limits(self.tp, axis, vel, acc, jerk) != TP_OK:
             raise PlannerError(f"axis {axis}: velocity {vel} and acceleration {acc} must be positive")
 
+    def limit_jerk(self, bint on) -> None:
+        """Keep the jerk limits, from the next start at rest on."""
+        tp_set_planner_type(self.tp, 1 if on else 0)
+
     def set_pos(self, pos) -> None:
         cdef double[9] p
         _nine(pos, p)

@@ -10,8 +10,9 @@ ring of the planned path is put back, with the place in it. Both happen at rest;
 from libc.math cimport fmax, fmin
 from libc.stdint cimport int64_t
 
+from emcmot.tp.jerk cimport forget_stretches
 from emcmot.tp.limits cimport entry_limit
-from emcmot.tp.model cimport AXES, BACK_RING, SPAN_BLEND, Segment, Span, TpState
+from emcmot.tp.model cimport BACK_RING, SPAN_BLEND, Segment, Span, TpState
 from emcmot.tp.path cimport exit_limit, feed_cap, refresh
 from emcmot.tp.tp cimport TP_TAP
 
@@ -83,6 +84,7 @@ cdef void _place(TpState* tp, int64_t index, double u) noexcept nogil:
     tp.seg_head = _first_segment(span)
     tp.held_span = tp.sweep = -1
     tp.caps_changed = 1
+    forget_stretches(tp)
 
 
 cdef inline int64_t _first_segment(const Span* span) noexcept nogil:
@@ -116,12 +118,12 @@ cdef inline int _may_go_back(const Segment* seg) noexcept nogil:
 cdef void _mirror(const TpState* tp, int64_t index, Span* image, int last) noexcept nogil:
     """Span `index` as it is run from its end to its start, on to the span before it, or to the end of the way back."""
     cdef const Span* span = _span(tp, index)
-    cdef int i
+    cdef int j
     image[0] = span[0]
     image.stop = 1 if last else _span(tp, index - 1).stop
     image.ratio = 1.0 if last else 1.0 / _span(tp, index - 1).ratio
-    for i in range(AXES):
-        image.dq0[i] = -span.dq1[i]
-        image.dq1[i] = -span.dq0[i]
-        image.ddq0[i] = span.ddq1[i]
-        image.ddq1[i] = span.ddq0[i]
+    for j in range(span.n):
+        image.dq0[j] = -span.dq1[j]
+        image.dq1[j] = -span.dq0[j]
+        image.ddq0[j] = span.ddq1[j]
+        image.ddq1[j] = span.ddq0[j]

@@ -29,6 +29,7 @@ cdef enum:                   # bits of TpSegment.enables
     TP_AF_ENABLED = 4        # adaptive feed acts
     TP_FH_ENABLED = 8        # feed hold acts
 
+from emcmot.tp.joint_map cimport TP_JOINTS, TpInverse
 from emcmot.tp.outputs cimport TpIo      # synchronised outputs that change when a segment starts
 
 ctypedef struct TpSegment:
@@ -85,6 +86,10 @@ cdef Tp* tp_create(int queue_size) noexcept nogil
 cdef void tp_free(Tp* tp) noexcept nogil
 cdef void tp_set_cycle_time(Tp* tp, double seconds) noexcept nogil
 cdef int tp_set_axis_limits(Tp* tp, int axis, double vel, double acc, double jerk) noexcept nogil   # jerk <= 0: none
+cdef void tp_set_planner_type(Tp* tp, int type) noexcept nogil               # 0: jerk as it comes; 1: jerk is limited. At rest
+# Limits of joints that are not axes; the functions and `kins` must outlive the planner. `inverse` NULL: no joints.
+cdef void tp_set_joints(
+    Tp* tp, TpInverse inverse, const void* kins, int joints, const double* vel, const double* acc, const double* jerk) noexcept nogil
 cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil                # only when done
 cdef int tp_add(Tp* tp, const TpSegment* segment, const TpIo* io) noexcept nogil                    # io may be NULL
 cdef void tp_set_feed_scale(Tp* tp, double scale) noexcept nogil             # 0..max; acts on feed moves

@@ -9,11 +9,13 @@ from libc.stdint cimport int64_t
 from libc.stdlib cimport calloc, free
 from libc.string cimport memcpy, memset
 
-from emcmot.tp.advance cimport advance, current_id, current_raw, current_segment
+from emcmot.tp.advance cimport advance
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, LIMITED, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.progress cimport current_id, current_raw, current_segment
 from emcmot.tp.reverse cimport turn_back, turn_forward
+from emcmot.tp.smooth cimport choose_smoothing
 from emcmot.tp.tap cimport at_rest
 
 from emcmot.layout import same_size
@@ -73,8 +75,9 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
         tp_free(<Tp*>s)
         return NULL
     s.dt = 0.001
-    for i in range(AXES):
-        s.vmax[i] = s.amax[i] = INFINITY
+    for i in range(LIMITED):
+        s.vmax[i] = s.amax[i] = s.jmax[i] = INFINITY
+    s.window = 1
     s.feed_scale = s.rapid_scale = s.adaptive_scale = 1.0
     s.sweep = s.held_span = -1
     return <Tp*>s
@@ -102,12 +105,32 @@ cdef int tp_set_axis_limits(Tp* tp, int axis, double vel, double acc, double jer
         return TP_BAD
     _state(tp).vmax[axis] = vel
     _state(tp).amax[axis] = acc
-    _state(tp).jmax[axis] = jerk
+    _state(tp).jmax[axis] = jerk if jerk > 0.0 else INFINITY
     return TP_OK
 
 
+cdef void tp_set_planner_type(Tp* tp, int type) noexcept nogil:
+    """Whether jerk limits hold, from the next start at rest with an empty queue on."""
+    _state(tp).limit_jerk = type == 1
+
+
+cdef void tp_set_joints(
+    Tp* tp, TpInverse inverse, const void* kins, int joints, const double* vel, const double* acc, const double* jerk
+) noexcept nogil:
+    """Limits of joints that are not axes; they hold for segments that are built from now on."""
+    cdef TpState* s = _state(tp)
+    cdef int k
+    s.inverse = inverse
+    s.kins = kins
+    s.joints = min(joints, TP_JOINTS) if inverse != NULL else 0
+    for k in range(s.joints):
+        s.vmax[AXES + k] = vel[k] if vel[k] > 0.0 else INFINITY
+        s.amax[AXES + k] = acc[k] if acc[k] > 0.0 else INFINITY
+        s.jmax[AXES + k] = jerk[k] if jerk[k] > 0.0 else INFINITY
+
+
 cdef inline int _idle(const TpState* s) noexcept nogil:
-    return s.active >= s.span_tail and s.raw_next >= s.raw_tail and s.seg_built >= s.seg_tail
+    return s.active >= s.span_tail and s.raw_next >= s.raw_tail and s.seg_built >= s.seg_tail and s.lag == 0
 
 
 cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
@@ -120,6 +143,7 @@ cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
         if not isfinite(pos[i]):
             return TP_BAD
     memcpy(s.pos, pos, sizeof(s.pos))
+    memcpy(s.planned, pos, sizeof(s.pos))
     memcpy(s.goal, pos, sizeof(s.goal))
     memset(s.vel, 0, sizeof(s.vel))
     s.history = s.span_tail
@@ -146,6 +170,8 @@ cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
         _merge_io(s, io)
     if seg.length < SHORTEST_MOVE:
         return TP_OK
+    if _idle(s):
+        choose_smoothing(s, given.tolerance if given.term == TP_TERM_BLEND else 0.0)
     seg.motion_type = given.motion_type
     seg.term = given.term
     seg.enables = given.enables

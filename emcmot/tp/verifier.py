@@ -89,6 +89,7 @@ class Report:
     deviation: float  # largest distance of a commanded position from the path
     corner: float  # largest distance of a programmed end point from the commanded path
     end: float  # distance of the last position from the last end point
+    jerk: Array | None = None  # largest share of each axis's limit, where there are limits
 
     @property
     def worst_velocity(self) -> float:
@@ -97,6 +98,10 @@ class Report:
     @property
     def worst_acceleration(self) -> float:
         return float(self.acceleration.max())
+
+    @property
+    def worst_jerk(self) -> float:
+        return 0.0 if self.jerk is None else float(self.jerk.max())
 
 
 def differences(positions: Array, start: Array, dt: float) -> tuple[Array, Array]:
@@ -152,9 +157,10 @@ def point_deviation(positions: Array, point: Array) -> tuple[float, int]:
 
 
 def verify(
-    positions: Array, path: list[Line | Arc], vmax: Array, amax: Array, dt: float, tolerance: float, stride: int = 1
-) -> Report:
-    """Worst violations of a whole run; only every `stride`-th position and end point are compared."""
+    positions: Array, path: list[Line | Arc], vmax: Array, amax: Array, dt: float, tolerance: float, stride: int = 1,
+    jmax: Array | None = None,
+) -> Report:  # fmt: skip
+    """Worst violations of a whole run; only every `stride`-th position and end point are compared with the path."""
     v, a = differences(positions, path[0].start, dt)
     return Report(
         seconds=len(positions) * dt,
@@ -163,4 +169,5 @@ def verify(
         deviation=path_deviation(positions[::stride], path, tolerance),
         corner=corner_deviation(positions, path[::stride], tolerance),
         end=float(np.linalg.norm(positions[-1] - path[-1].end)),
+        jerk=None if jmax is None else np.abs(np.diff(a, axis=0, prepend=0.0 * a[:1])).max(axis=0) / dt / jmax,
     )

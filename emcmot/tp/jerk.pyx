@@ -1,0 +1,292 @@
+"""Motion along the planned path with limited jerk, one servo period at a time.
+
+The state is the speed v = du/dt and its change a. The path ahead is looked at as *stretches*: spans with similar limits taken as one,
+each with a largest speed, acceleration and jerk along the path. Of every stretch within reach it must be possible to slow down
+to its speed before it begins, and to stand still where a move ends in a stop, or the known path does. If that is
+possible now, it still is after a period of the hardest braking: so there is always a way to keep all limits.
+
+A period takes the acceleration that leads to the wanted speed (feed, override, hold) without passing it; where that would
+make one of the stretches unreachable, it takes the largest one that does not. Nothing is planned further ahead, so every
+command acts at once.
+Speeds here are those of `smooth`, which adds what makes the curvature continuous.
+"""
+
+from libc.math cimport copysign, fabs, fmax, fmin, sqrt
+from libc.stdint cimport int64_t
+
+from emcmot.tp.follow cimport count_way
+from emcmot.tp.model cimport STRETCHES, Segment, Span, Stretch, TpState
+from emcmot.tp.path cimport feed
+from emcmot.tp.progress cimport next_span, run_tap, target_w, waiting
+from emcmot.tp.tp cimport TP_TAP
+
+cdef enum:
+    GATHERED_PER_PERIOD = 128    # spans
+    HALVINGS = 10                # of the range of accelerations, where the wanted one is too large
+    SPANS_PER_PERIOD = 5000      # bound of the way of one period
+
+cdef double NO_WAY = 1e-12       # u
+cdef double LEAST_SPEED = 1e-9
+cdef double ALIKE = 0.85         # ratio of limits from which two spans may be one stretch
+cdef double SHORT = 0.04         # of the way that braking takes: shorter spans are taken together anyway
+cdef double REACH = 1.25         # the known path should be longer than braking takes, by this
+
+
+cdef inline Span* _span(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.spans[index & tp.span_mask]
+
+
+cdef inline Stretch* _stretch(TpState* tp, int k) noexcept nogil:
+    return &tp.stretches[(tp.stretch_head + k) % STRETCHES]
+
+
+# --- stretches --------------------------------------------------------------------------------------------------------
+
+cdef void forget_stretches(TpState* tp) noexcept nogil:
+    """The path ahead is another one now; at rest."""
+    tp.stretch_count = 0
+    tp.stretched = tp.active
+    tp.a = 0.0
+    tp.hungry = 1
+
+
+cdef void _gather(TpState* tp) noexcept nogil:
+    """Take new spans into stretches. The first stretch, where the machine is, stays as it is."""
+    cdef const Span* span
+    cdef Stretch* last
+    cdef int count
+    for count in range(GATHERED_PER_PERIOD):
+        if tp.stretched >= tp.span_tail:
+            return
+        span = _span(tp, tp.stretched)
+        last = _stretch(tp, tp.stretch_count - 1)
+        if tp.stretch_count > 1 and not _span(tp, last.last).stop and _belongs(tp, last, span):
+            last.length += span.h
+            last.speed = fmax(last.speed, span.speed)
+            last.steady = fmin(last.steady, span.steady)
+            last.push = fmin(last.push, span.push)
+            last.jerk = fmin(last.jerk, span.jerk)
+        elif tp.stretch_count < STRETCHES:
+            tp.stretch_count += 1
+            last = _stretch(tp, tp.stretch_count - 1)
+            last.seg = span.seg
+            last.length = span.h - (tp.u if tp.stretched == tp.active else 0.0)
+            last.speed = span.speed
+            last.steady = span.steady
+            last.push = span.push
+            last.jerk = span.jerk
+        else:
+            return
+        last.last = tp.stretched
+        tp.stretched += 1
+
+
+cdef int _belongs(const TpState* tp, const Stretch* stretch, const Span* span) noexcept nogil:
+    """Whether a span may join a stretch: it is alike, or both are too short to change the speed by much."""
+    cdef const Segment* a = &tp.segs[stretch.seg & tp.seg_mask]
+    cdef const Segment* b = &tp.segs[span.seg & tp.seg_mask]
+    cdef double slow = fmin(stretch.steady, span.steady), push, jerk
+    if a.vel != b.vel or a.vel_max != b.vel_max or a.enables != b.enables or a.motion_type != b.motion_type:
+        return 0
+    if a.unit != b.unit or a.spindle != b.spindle:
+        return 0
+    push = fmin(stretch.push, span.push)
+    jerk = fmin(stretch.jerk, span.jerk)
+    if slow >= ALIKE * fmax(stretch.steady, span.steady) and push >= ALIKE * fmax(stretch.push, span.push):
+        if jerk >= ALIKE * fmax(stretch.jerk, span.jerk):
+            return 1
+    return stretch.length + span.h <= SHORT * _settling_way(slow, 0.0, push, jerk)
+
+
+cdef double _speed(const TpState* tp, const Stretch* stretch) noexcept nogil:
+    """Speed that a stretch may be run at now, overrides included."""
+    return fmin(stretch.steady, feed(tp, &tp.segs[stretch.seg & tp.seg_mask]) / stretch.speed)
+
+
+# --- braking ----------------------------------------------------------------------------------------------------------
+
+cdef inline double _settling_way(double v, double to, double push, double jerk) noexcept nogil:
+    """Way on which the speed falls from `v` to `to`, with no acceleration at either end."""
+    cdef double fall = v - to
+    if fall * jerk <= push * push:
+        return (v + to) * sqrt(fall / jerk)
+    return 0.5 * (v + to) * (fall / push + push / jerk)
+
+
+cdef double _braking_way(double v, double a, double to, double push, double jerk) noexcept nogil:
+    """Least way until the speed, which changes by `a` now, is no more than `to` and stays so."""
+    cdef double t, top, root
+    if a >= 0.0:
+        t = a / jerk
+        top = v + 0.5 * a * t
+        if top <= to:
+            return 0.0
+        return v * t + a * t * t / 3.0 + _settling_way(top, to, push, jerk)
+    if v <= to:
+        return 0.0
+    a = fmax(a, -push)
+    t = -a / jerk
+    root = a * a - 2.0 * jerk * (v - to)
+    if root >= 0.0:                          # on the way back to a = 0 already
+        t = (-a - sqrt(root)) / jerk
+        return v * t + 0.5 * a * t * t + jerk * t * t * t / 6.0
+    top = v - 0.5 * a * t                    # where this braking would have begun
+    return fmax(0.0, _settling_way(top, to, push, jerk) - top * t + jerk * t * t * t / 6.0)
+
+
+cdef int _in_reach(TpState* tp, double v, double a, double way) noexcept nogil:
+    """Whether all stretches ahead can be met at their speeds, from v and a, `way` from here."""
+    cdef const Stretch* here = _stretch(tp, 0)
+    cdef const Stretch* following
+    cdef double distance = here.length - way, push = here.push, jerk = here.jerk, rest
+    cdef int k
+    for k in range(tp.stretch_count):
+        rest = _braking_way(v, a, 0.0, push, jerk)
+        if _span(tp, here.last).stop:
+            return rest <= distance
+        if k == tp.stretch_count - 1:
+            tp.hungry |= rest * REACH >= distance
+            return rest <= distance
+        if rest < distance:
+            return 1
+        following = _stretch(tp, k + 1)
+        if _braking_way(v, a, following.now, push, fmin(jerk, following.jerk)) > distance:
+            return 0
+        here = following
+        distance += here.length
+        push = fmin(push, here.push)
+        jerk = fmin(jerk, here.jerk)
+    return 1
+
+
+# --- one period -------------------------------------------------------------------------------------------------------
+
+cdef inline double _ramp(double gap, double jerk, double dt) noexcept nogil:
+    """Acceleration after `dt`, from which a gap of speed is closed just when it is back at zero."""
+    return sqrt(0.25 * jerk * jerk * dt * dt + 2.0 * jerk * gap) - 0.5 * jerk * dt
+
+
+cdef double _gentle(TpState* tp, double v, int up) noexcept nogil:
+    """Largest acceleration (`up`) or braking now that can be back within the limits of each stretch when it begins.
+
+    Speeding up, those that will be slower than the machine is now are none of its concern: it must brake for them anyway.
+    """
+    cdef const Stretch* here = _stretch(tp, 0)
+    cdef const Stretch* following
+    cdef double most = here.push, distance = here.length, jerk = here.jerk, speed
+    cdef int k
+    for k in range(1, tp.stretch_count):
+        following = _stretch(tp, k)
+        jerk = fmin(jerk, following.jerk)
+        speed = fmax(LEAST_SPEED, following.now if up else v)
+        if not up or following.now >= v:
+            most = fmin(most, following.push + jerk * distance / speed)
+        if jerk * distance > here.push * fmax(speed, v):
+            break
+        distance += following.length
+    return most
+
+
+cdef double _choose(TpState* tp, double v, double target) noexcept nogil:
+    """Acceleration at the end of this period."""
+    cdef const Stretch* here = _stretch(tp, 0)
+    cdef double dt = tp.dt, change = here.jerk * dt
+    cdef double gap = target - v - 0.5 * tp.a * dt, most = _gentle(tp, v, gap >= 0.0)
+    cdef double wanted = copysign(fmin(most, _ramp(fabs(gap), here.jerk, 2.0 * dt)), gap)
+    cdef double low, high, middle
+    cdef int k
+    wanted = fmax(tp.a - change, fmin(tp.a + change, wanted))
+    if _in_reach(tp, v + 0.5 * (tp.a + wanted) * dt, wanted, dt * (v + (2.0 * tp.a + wanted) * dt / 6.0)):
+        return wanted
+    low = fmax(tp.a - change, -fmin(here.push, _ramp(fmax(0.0, v + 0.5 * tp.a * dt), here.jerk, dt)))
+    low = fmin(low, tp.a + change)
+    high = wanted
+    if low >= high:
+        return wanted
+    for k in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if _in_reach(tp, v + 0.5 * (tp.a + middle) * dt, middle, dt * (v + (2.0 * tp.a + middle) * dt / 6.0)):
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+cdef void move_smoothly(TpState* tp) noexcept nogil:
+    """Move along the path for one period."""
+    cdef Span* span = _span(tp, tp.active)
+    cdef double v = sqrt(tp.w), dt = tp.dt, target, a, way, least
+    cdef int k
+    if tp.draining:
+        if tp.lag > 0:
+            return
+        tp.draining = 0
+    if tp.w == 0.0 and waiting(tp):
+        return
+    if tp.u >= span.h - NO_WAY and not _go_on(tp, span):
+        return
+    span = _span(tp, tp.active)
+    if tp.w == 0.0 and tp.u == 0.0 and (tp.draining or waiting(tp)):
+        return
+    if tp.segs[span.seg & tp.seg_mask].kind == TP_TAP and tp.u == 0.0:
+        run_tap(tp, span)
+        return
+    tp.hungry = 0
+    _gather(tp)
+    for k in range(tp.stretch_count):
+        _stretch(tp, k).now = _speed(tp, _stretch(tp, k))
+    target = fmin(_stretch(tp, 0).steady, sqrt(target_w(tp)))
+    least = _stretch(tp, 0).jerk * dt * dt
+    a = _choose(tp, v, target)
+    way = dt * (v + (2.0 * tp.a + a) * dt / 6.0)
+    v += 0.5 * (tp.a + a) * dt
+    if target == 0.0 and v <= least and fabs(a) * dt <= 2.0 * least:
+        tp.w = tp.a = 0.0
+        return
+    tp.a = a
+    tp.w = fmax(0.0, v) ** 2
+    if _ends(tp, 0) and _stretch(tp, 0).length <= 4.0 * least * dt and v <= 4.0 * least:
+        way = _stretch(tp, 0).length + NO_WAY
+    _go(tp, fmax(0.0, way))
+
+
+cdef int _ends(TpState* tp, int k) noexcept nogil:
+    """Whether the machine must stand at the end of a stretch."""
+    return k == tp.stretch_count - 1 or _span(tp, _stretch(tp, k).last).stop
+
+
+cdef int _go_on(TpState* tp, Span* span) noexcept nogil:
+    """On to the next span; 0 where the path ends, or the machine stands for a while."""
+    cdef int ended = tp.active == _stretch(tp, 0).last
+    if not next_span(tp, span):
+        tp.a = 0.0
+        tp.hungry = 1
+        if tp.active >= tp.span_tail:
+            forget_stretches(tp)
+        return 0
+    if ended and tp.stretch_count > 0:
+        tp.stretch_head = (tp.stretch_head + 1) % STRETCHES
+        tp.stretch_count -= 1
+    if span.stop:
+        tp.a = 0.0
+        tp.draining = 1
+        return 0
+    return 1
+
+
+cdef void _go(TpState* tp, double way) noexcept nogil:
+    """Travel along the spans."""
+    cdef Span* span
+    cdef double room
+    cdef int k
+    for k in range(SPANS_PER_PERIOD):
+        span = _span(tp, tp.active)
+        room = fmin(way, span.h - tp.u)
+        count_way(tp, &tp.segs[span.seg & tp.seg_mask], room)
+        tp.u += room
+        _stretch(tp, 0).length -= room
+        way -= room
+        if tp.u < span.h - NO_WAY or not _go_on(tp, span):
+            return
+        if way <= 0.0:
+            return

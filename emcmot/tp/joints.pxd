@@ -1,0 +1,11 @@
+"""Joints that are not axes, in the look-ahead."""
+
+from emcmot.tp.model cimport Segment, Span, TpState
+
+ctypedef struct Curve:       # a segment, or the blend between `before` and `seg`
+    const Segment* before    # NULL: the segment alone
+    const Segment* seg
+    double trim
+    double length
+
+cdef double add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil

@@ -1,0 +1,139 @@
+"""With jerk limits on, whatever moves and commands come, velocity, acceleration, jerk and tolerance hold."""
+
+import os
+
+import numpy as np
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from emcmot.tp.planner import Planner
+from emcmot.tp.verifier import Arc, Line, verify
+
+DT = 0.001
+ROUNDING = 1 + 1e-6
+COMPARED = 400  # positions of a job that are compared with its path
+EXAMPLES = int(os.environ.get("PYEMC_EXAMPLES", "10"))  # of each property; hundreds find more
+SETTINGS = settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+
+coordinate = st.one_of(st.floats(-8, 8), st.integers(-4, 4).map(float), st.integers(-3, 3).map(lambda k: k * 0.001))
+point = st.tuples(coordinate, coordinate, coordinate, st.sampled_from([0.0, 0.0, 5.0, -20.0]))
+limit = st.tuples(st.floats(20, 150), st.floats(100, 2000), st.floats(2000, 100_000))
+command = st.tuples(
+    st.integers(1, 200),
+    st.sampled_from(
+        [
+            ("feed_scale", 0.0),
+            ("feed_scale", 0.3),
+            ("feed_scale", 1.0),
+            ("feed_scale", 1.9),
+            ("adaptive_scale", 0.5),
+            ("adaptive_scale", 1.0),
+            ("vel_limit", 15.0),
+            ("vel_limit", 200.0),
+            ("feed_hold", True),
+            ("feed_hold", False),
+            ("pause",),
+            ("resume",),
+            ("step_once",),
+            ("reverse", True),
+            ("reverse", False),
+        ]
+    ),
+)
+
+
+class Job:
+    """Moves given to a planner with jerk limits, and the path that they stand for."""
+
+    def __init__(self, limits, tolerance, feed):
+        self.planner, self.limits, self.tolerance, self.feed = Planner(DT, 500), limits, tolerance, feed
+        for axis, values in enumerate(limits):
+            self.planner.set_limits(axis, *values)
+        self.planner.limit_jerk(True)
+        self.path, self.at = [], np.zeros(9)
+
+    def add(self, end, turn):
+        end9 = np.zeros(9)
+        end9[: len(end)] = end
+        options = {"tolerance": self.tolerance, "vel_max": self.feed * 2, "id": len(self.path) + 1}
+        if turn is None or np.hypot(*(end9[:2] - self.at[:2])) < 1e-3:
+            assert self.planner.add_line(end9, self.feed, **options)
+            if not np.array_equal(self.at, end9):
+                self.path.append(Line(self.at, end9))
+        else:
+            center = np.array([*(self.at[:2] + end9[:2]) / 2, self.at[2]])
+            assert self.planner.add_arc(end9, center, (0, 0, 1), turn, self.feed, **options)
+            self.path.append(Arc(self.at, end9, center, np.array([0.0, 0, 1]), turn))
+        self.at = end9
+
+    def check(self, positions):
+        assert self.planner.status()["done"]
+        if not self.path:
+            return
+        rows = [*self.limits, *[(1.0, 1.0, 1.0)] * (9 - len(self.limits))]
+        vmax, amax, jmax = (np.array(column) for column in zip(*rows, strict=True))
+        stride = max(1, len(positions) // COMPARED)
+        report = verify(positions, self.path, vmax, amax, DT, self.tolerance, stride, jmax)
+        assert report.worst_velocity <= ROUNDING
+        assert report.worst_acceleration <= ROUNDING
+        assert report.worst_jerk <= ROUNDING
+        assert report.deviation <= self.tolerance + 1e-6
+
+
+moves = st.lists(st.tuples(point, st.sampled_from([None, None, 0, -1])), min_size=1, max_size=12)
+limits = st.tuples(limit, limit, limit, limit)
+
+
+@SETTINGS
+@given(moves=moves, limits=limits, tolerance=st.sampled_from([0.002, 0.02, 0.2]), feed=st.floats(5, 120))
+def test_any_chain_of_moves_keeps_every_limit_and_arrives(moves, limits, tolerance, feed):
+    job = Job(limits, tolerance, feed)
+    for end, turn in moves:
+        job.add(end, turn)
+    positions = job.planner.run_to_end(300.0)
+    job.check(positions)
+    assert np.array_equal(job.planner.status()["pos"], job.at)
+
+
+@SETTINGS
+@given(moves=moves, commands=st.lists(command, max_size=25), limits=limits, feed=st.floats(5, 120))
+def test_commands_at_any_instant_break_nothing(moves, commands, limits, feed):
+    job = Job(limits, 0.02, feed)
+    for end, turn in moves:
+        job.add(end, turn)
+    parts = []
+    for periods, (name, *arguments) in commands:
+        parts.append(job.planner.step(periods))
+        getattr(job.planner, name)(*arguments)
+    for name, *arguments in (("resume",), ("feed_hold", False), ("feed_scale", 1.0), ("vel_limit", 0.0)):
+        getattr(job.planner, name)(*arguments)
+    parts.append(job.planner.run_to_end(300.0))
+    job.check(np.concatenate(parts))
+
+
+@SETTINGS
+@given(
+    moves=st.lists(
+        st.tuples(point, st.sampled_from([None, None, 0, -1]), st.integers(0, 200)), min_size=2, max_size=12
+    ),
+    limits=limits,
+)
+def test_moves_that_arrive_late_are_joined_without_a_jolt(moves, limits):
+    job, parts = Job(limits, 0.02, 60.0), []
+    for end, turn, periods in moves:
+        job.add(end, turn)
+        parts.append(job.planner.step(periods))
+    parts.append(job.planner.run_to_end(300.0))
+    job.check(np.concatenate(parts))
+
+
+@SETTINGS
+@given(moves=moves, limits=limits, periods=st.integers(1, 1500))
+def test_an_abort_at_any_instant_comes_to_rest_within_limits(moves, limits, periods):
+    job = Job(limits, 0.05, 80.0)
+    for end, turn in moves:
+        job.add(end, turn)
+    parts = [job.planner.step(periods)]
+    job.planner.abort()
+    parts.append(job.planner.run_to_end(20.0))
+    job.check(np.concatenate(parts))
