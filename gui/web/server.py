@@ -12,7 +12,7 @@ from typing import Any
 
 import gui.web.methods  # noqa: F401  registers what clients may call
 import linuxcnc
-from gui.web import dialogs, displaykeys, texts, tooltable
+from gui.web import dialogs, displaykeys, texts
 from gui.web.access import Access
 from gui.web.client import Client
 from gui.web.forecast import Forecast
@@ -22,7 +22,7 @@ from gui.web.jogging import BEAT_INTERVAL, BEAT_TIMEOUT, Jogging
 from gui.web.machine import Machine
 from gui.web.messages import Messages
 from gui.web.preview import Preview
-from gui.web.programfolder import ProgramFolder, version_of
+from gui.web.programfolder import ProgramFolder
 from gui.web.programs import Programs
 from gui.web.scope import Scope
 from gui.web.settings import Settings
@@ -156,21 +156,18 @@ class Server:
             known = found
 
     def _file_contents(self) -> dict[str, Any]:
-        return {"tools": self._tools_version(), "offsets": self._offsets_version()}
-
-    def _tools_version(self) -> Any:
-        if self.tool_file is None or not version_of(self.tool_file):
-            return None
-        return tooltable.read(self.tool_file)["version"]
-
-    def _offsets_version(self) -> Any:
-        try:
-            return hashlib.blake2b(self.parameter_file.read_bytes()).digest() if self.parameter_file else None
-        except OSError:
-            return None
+        return {"tools": _fingerprint(self.tool_file), "offsets": _fingerprint(self.parameter_file)}
 
     async def _watch_pins(self) -> None:
         while True:
             await asyncio.sleep(PINS_LOOK)
             self.dialogs.look()
             self.toolchange.look()
+
+
+def _fingerprint(path: Path | None) -> bytes | None:
+    """Changes with the content of a file; None where there is none that can be read."""
+    try:
+        return hashlib.blake2b(path.read_bytes()).digest() if path is not None else None
+    except OSError:
+        return None

@@ -22,7 +22,7 @@ from gui.web.wizard.server import WizardServer
 
 log = logging.getLogger(__name__)
 
-PAGE = Path(__file__).with_name("page")
+PAGE = Path(__file__).resolve().with_name("page")
 MARK = ("X-Requested-With", "linuxcnc-web")
 HEARTBEAT = 10.0  # s between WebSocket pings
 STATUS_OF = {"file": 400, "argument": 400, "role": 403, "conflict": 409, "state": 409}

@@ -61,16 +61,17 @@ function powerButton(app) {
 function stateDisplay(app) {
   const line = h("div", { id: "state-line", role: "status" });
   const detail = h("div", { id: "detail-line" });
+  const title = h("h1", { class: "visually-hidden" });
   app.store.watch(
-    ["link", "machine", "task_state", "task_mode", "interp_state", "paused", "task_paused", "all_homed", "homing", "toolchange", "file", "config"],
+    ["link", "machine", "task_state", "task_mode", "interp_state", "paused", "task_paused", "all_homed", "homing", "toolchange", "program", "config"],
     (v) => {
       const state = stateInWords(v);
+      setText(title, v.config?.title ?? "");
       setText(line, state.text);
       setAttribute(line, "data-kind", state.kind);
       setText(detail, [v.config?.title || v.config?.machine, modeInWords(v), v.program?.name].filter(Boolean).join(" · "));
     },
   );
-  const title = h("h1", { class: "visually-hidden" }, app.v.config?.title ?? "");
   return h("div", { id: "state" }, title, line, detail);
 }
 

@@ -59,6 +59,8 @@ export class PathData {
 
   /** @param {any} frame a `forecast` frame */
   addForecast(frame) {
+    this.forecast = null;
+    if (!(frame.seconds > 0)) return; // nothing that takes time, or no forecast at all
     this.forecast = {
       lines: new Uint32Array(buffer(frame.lines)),
       times: new Float32Array(buffer(frame.times)),
