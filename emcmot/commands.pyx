@@ -350,7 +350,7 @@ command(
 command(MotCommand_TELEOP, 0, teleop_mode, "Teleop mode, jogs of axes. Refused as COORD is.")
 command(MotCommand_SPINDLE_SCALE, SPINDLE, spindle_scale, "Spindle override: factor `scale`.")
 command(MotCommand_SS_ENABLE, 0, enable_override, "Spindle override acts (`mode` 1) or not.")
-command(MotCommand_FEED_SCALE, 0, feed_scale, "Feed override: factor `scale`, up to SET_MAX_FEED_OVERRIDE.")
+command(MotCommand_FEED_SCALE, 0, feed_scale, "Feed override: factor `scale`; it acts up to SET_MAX_FEED_OVERRIDE.")
 command(MotCommand_RAPID_SCALE, 0, rapid_scale, "Rapid override: factor `scale`, 0 to 1.")
 command(MotCommand_FS_ENABLE, 0, enable_override, "Feed override acts on the moves to come (`mode` 1) or not.")
 command(MotCommand_FH_ENABLE, 0, enable_override, "Feed hold acts on the moves to come (`mode` 1) or not.")

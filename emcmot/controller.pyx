@@ -150,13 +150,14 @@ cdef void set_overrides(Motion* m) noexcept nogil:
     """Hand the planner this period's overrides, and work out the product that acts on the running move."""
     cdef int enables = m.tp_status.enables if m.tp_status.motion_type else m.enables
     m.adaptive_scale = adaptive_scale(m, enables)
-    tp_set_feed_scale(m.tp, m.feed_scale)
+    cdef double feed_scale = min(m.feed_scale, m.max_feed_scale)
+    tp_set_feed_scale(m.tp, feed_scale)
     tp_set_rapid_scale(m.tp, m.rapid_scale)
     tp_set_adaptive_scale(m.tp, m.adaptive_scale)
     tp_set_feed_hold(m.tp, m.feed_hold)
     m.net_feed_scale = 1.0
     if enables & Enables_FS:
-        m.net_feed_scale *= m.rapid_scale if m.tp_status.motion_type == TYPE_TRAVERSE else m.feed_scale
+        m.net_feed_scale *= m.rapid_scale if m.tp_status.motion_type == TYPE_TRAVERSE else feed_scale
     if enables & Enables_AF:
         m.net_feed_scale *= m.adaptive_scale
     if (enables & Enables_FH and m.feed_hold) or m.feed_inhibit:
@@ -263,7 +264,7 @@ cdef void write_pins(Motion* m) noexcept nogil:
     """The machine's output pins that are not written where they are worked out."""
     m.motion_enabled_out = m.enabled
     m.coord_mode_out = m.enabled and m.mode == MotionState_COORD
-    m.teleop_mode_out = m.enabled and m.mode == MotionState_TELEOP
+    m.teleop_mode_out = (m.mode if m.enabled else m.mode_wanted) == MotionState_TELEOP
     m.in_position = m.at_rest
     m.coord_error_out = m.coord_error
     m.motion_type_out = m.tp_status.motion_type if m.mode == MotionState_COORD else 0

@@ -156,7 +156,7 @@ cdef int forward(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 
 cdef int feed_scale(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    m.feed_scale = min(max(c.scale, 0.0), m.max_feed_scale)
+    m.feed_scale = max(c.scale, 0.0)
     return MotCommandStatus_OK
 
 

@@ -242,7 +242,7 @@ cdef void jog_cycle(Motion* m) noexcept nogil:
     """Before the planners' step: stop pins, wheels, and speeds under the feed override."""
     cdef int n
     cdef int homing = 0
-    cdef double scale = m.feed_scale if m.enables & Enables_FS else 1.0
+    cdef double scale = min(m.feed_scale, m.max_feed_scale) if m.enables & Enables_FS else 1.0
     cdef Joint* joint
     cdef Axis* axis
     if m.jog_active and (m.jog_stop or m.jog_stop_immediate):
@@ -275,6 +275,7 @@ cdef void end_jogs(Motion* m) noexcept nogil:
     for n in range(MAX_AXES):
         axis = &m.axis[n]
         if not axis.teleop.active:
+            axis.teleop.target = axis.teleop.pos
             axis.kb_jog = 0
             axis.wheel_jog = 0
         m.jog_active |= axis.kb_jog or axis.wheel_jog

@@ -113,7 +113,7 @@ cdef void write_joints(Motion* m) noexcept nogil:
         joint.motor_pos_cmd = joint.pos_cmd + joint.correction.pos + joint.motor_offset
         if n >= m.num_joints - m.num_extra_joints and joint.home.homed:
             joint.motor_pos_cmd = joint.posthome_cmd + joint.motor_offset
-        joint.inpos = not joint.free.active and not joint.home.homing and m.at_rest
+        joint.inpos = not joint.free.active and not joint.home.homing
 
 
 cdef void jog_bounds(const Joint* joint, double* low, double* high) noexcept nogil:

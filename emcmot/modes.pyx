@@ -19,7 +19,7 @@ from emcmot.probe cimport PROBE_OFF
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport stop_spindles
 from emcmot.state cimport Axis, Joint, Motion
-from emcmot.tp.tp cimport TP_OK, tp_abort, tp_set_pos
+from emcmot.tp.tp cimport TP_OK, tp_abort, tp_resume, tp_set_pos
 from emcmot.world cimport align_joints, refresh_planner_limits, update_world_feedback, world_from_joints
 
 from emcmot.layout import same_size
@@ -64,6 +64,8 @@ cdef void stop_all(Motion* m) noexcept nogil:
     stop_jogs(m)
     if not m.tp_status.done or m.tp_status.depth > 0:
         tp_abort(m.tp)
+    else:
+        tp_resume(m.tp)
     m.probing = PROBE_OFF
     m.pending_io_set = 0
     m.pending_io.dout_mask = 0
@@ -118,8 +120,15 @@ cdef void enter_free(Motion* m) noexcept nogil:
         free_planner_rest_at(&joint.free, joint.pos_cmd)
         joint.free.acc_limit = joint.acc_limit
         joint.jog_vel = 0.0
+    end_teleop(m)
     m.chasing = 0
     m.mode = MotionState_FREE
+
+
+cdef void end_teleop(Motion* m) noexcept nogil:
+    cdef int n
+    for n in range(MAX_AXES):
+        m.axis[n].teleop.enabled = 0
 
 
 cdef void enter_teleop(Motion* m) noexcept nogil:
@@ -141,6 +150,7 @@ cdef void enter_coord(Motion* m) noexcept nogil:
     for n in range(MAX_AXES):
         pos[n] = m.pos_cmd[n] - m.eoffset[n]
     if tp_set_pos(m.tp, pos) == TP_OK:
+        end_teleop(m)
         m.mode = MotionState_COORD
         m.coord_error = 0
 

@@ -95,7 +95,7 @@ cdef void spindle_cycle(Motion* m) noexcept nogil:
         s.speed_out_rps = s.speed_out / 60.0
         s.speed_out_rps_abs = s.speed_out_abs / 60.0
         s.speed_cmd_rps = s.speed / 60.0
-        s.on = s.state != 0
+        s.on = s.speed_out != 0.0
         s.forward = s.speed_out > 0.0
         s.reverse = s.speed_out < 0.0
 

@@ -1,8 +1,8 @@
-"""An arm of six turning joints with any geometry (A-N, ALPHA-N, D-N: Craig's Denavit-Hartenberg parameters, mm and rad).
+"""An arm of six turning joints with any geometry: A-N, ALPHA-N, D-N, Craig's Denavit-Hartenberg parameters, mm and rad.
 
 The joints of a pose are found from where they are, by damped Newton steps; ``last-iterations`` shows how many it took.
-``unrotate-N``: joint N's motor turns with this share of joint N - 1 as well, which is taken out. Axes u v w are joints 6 to 8
-where the machine has them. Switchable to the identity.
+``unrotate-N``: joint N's motor turns with this share of joint N - 1 as well, which is taken out. Axes u v w are joints
+6 to 8 where the machine has them. Switchable to the identity.
 """
 
 from libc.math cimport M_PI, atan2, fabs, hypot, sqrt
@@ -71,7 +71,9 @@ cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept 
     return 0
 
 
-cdef double error_of(const double* wanted_r, const double* wanted_p, const double* r, const double* p, double* e) noexcept nogil:
+cdef double error_of(
+    const double* wanted_r, const double* wanted_p, const double* r, const double* p, double* e
+) noexcept nogil:
     """What is missing to the wanted frame: three ways, then the turn as a vector (rad); returns its size."""
     cdef double turn[3]
     cdef double m[9]

@@ -105,7 +105,7 @@ cdef class KinematicsModule:
             self.kins.letter_of_joint[joint] = AXIS_LETTERS.index(letter)
 
     cdef offer_switchable(self, KinsFunction forward, KinsFunction inverse, str coordinates, str sparm, axes=None):
-        """Offer a kinematics as type 0 and the identity of ``coordinates`` as 1 and 2; ``sparm`` may turn 0 and 1 round."""
+        """Offer a kinematics as type 0, the identity of ``coordinates`` as 1 and 2; ``sparm`` may swap 0 and 1."""
         cdef int way
         letters = {joint: AXIS_LETTERS.index(letter) for joint, letter in enumerate(coordinates)}
         self.set_letters(coordinates)
@@ -165,7 +165,7 @@ cdef class KinematicsModule:
         return [pose[i] for i in range(KINS_AXES)]
 
     def inverse(self, pose, near=None) -> list:
-        """The joint positions of ``pose``, of several solutions that which joints ``near`` have; ValueError for none."""
+        """The joint positions of ``pose``, of several solutions the one nearest to ``near``; ValueError for none."""
         cdef double j[KINS_JOINTS]
         cdef double p[KINS_AXES]
         _fill(p, KINS_AXES, pose)
@@ -176,7 +176,8 @@ cdef class KinematicsModule:
 
     def connect(self, comp) -> None:
         """Make the HAL pins, and remember which double each is bound to."""
-        from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RW, HAL_S32, HAL_U32  # the library needs no HAL
+        # here, because the library needs no HAL
+        from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RW, HAL_S32, HAL_U32
 
         types = {"float": HAL_FLOAT, "bit": HAL_BIT, "s32": HAL_S32, "u32": HAL_U32}
         directions = {"IN": HAL_IN, "OUT": HAL_OUT, "IO": HAL_IO}
@@ -213,7 +214,9 @@ cdef bint _finite(const double* values, int size) noexcept nogil:
     return True
 
 
-def joint_letters(name: str, coordinates: str | None, standard: str, joints: int = KINS_JOINTS, *, repeats: bool = False) -> str:
+def joint_letters(
+    name: str, coordinates: str | None, standard: str, joints: int = KINS_JOINTS, *, repeats: bool = False
+) -> str:
     """The letters of the joints that ``coordinates=`` gives, lower case; HalError for letters that do not fit.
 
     ``standard``: those without the argument; each of them must be there.

@@ -1,7 +1,7 @@
 """A linear delta robot: three carriages (joints 0 to 2) on columns, and arms from them to the tool.
 
-The columns stand around the origin at the effective radius R, the first at (0, R), the others a third of a turn on each,
-counterclockwise; the arms are L long. a b c u v w are joints 3 to 8.
+The columns stand around the origin at the effective radius R, the first at (0, R), the others a third of a turn on
+each, counterclockwise; the arms are L long. a b c u v w are joints 3 to 8.
 """
 
 from libc.math cimport cos, sin, sqrt

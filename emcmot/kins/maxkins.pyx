@@ -1,7 +1,7 @@
 """A small five-axis mill: the head tilts about y (b), the work turns on the table (c), and u v w move along the tool.
 
-``pivot-length`` is the distance from the head's pivot to the tool's tip at w 0. Joints are x y z a b c u v w; x and z
-of the slides make up for the tilted tool, x and y turn with the table.
+``pivot-length`` is the distance from the head's pivot to the tool's tip at w 0. Joints are x y z a b c u v w, the last
+three where there are any; x and z of the slides make up for the tilted tool, x and y turn with the table.
 """
 
 from libc.math cimport cos, sin
@@ -29,11 +29,11 @@ cdef void tilt(const Kinematics* kins, const double* pose, double* x, double* z)
 cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
     cdef double x, z
     cdef int n
-    for n in range(3, JOINTS):
+    for n in range(3, kins.joints):
         pose[n] = joints[n]
     tilt(kins, pose, &x, &z)
     pose[0] = joints[0] - x
-    pose[1] = joints[1] - joints[7]
+    pose[1] = joints[1] - pose[7]
     pose[2] = joints[2] - z
     turn_plane(&pose[0], &pose[1], joints[5])
     return 0
@@ -42,7 +42,7 @@ cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept 
 cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept nogil:
     cdef double x, z
     cdef int n
-    for n in range(JOINTS):
+    for n in range(kins.joints):
         joints[n] = pose[n]
     tilt(kins, pose, &x, &z)
     turn_plane(&joints[0], &joints[1], -pose[5])
@@ -54,6 +54,7 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
 
 def create() -> KinematicsModule:
     cdef KinematicsModule module = KinematicsModule("maxkins", JOINTS, PARAMETERS)
+    module.fewest_joints = 6
     module.offer(forward, inverse, {joint: joint for joint in range(3, JOINTS)})
     return module
 

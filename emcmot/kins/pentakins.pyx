@@ -1,8 +1,8 @@
-"""A pentapod: five struts (joints) from points above to rings around the effector; x y z a b are its place and attitude.
+"""A pentapod: five struts (joints) from points above to rings around the effector; x y z a b are its pose.
 
-The effector turns about x by a, then about y by b. Strut N leads from base.N.x y z to the nearest point of the ring of
-radius effector.N.r at the height effector.N.z above the effector's origin, so the effector may turn freely about its own
-axis. ``tool-offset`` moves the origin along that axis. The pose of given struts is found by Newton's method from the last
+The effector turns about x by a, then about y by b. Strut N leads from base.N.x y z to the nearest point of the ring
+of radius effector.N.r at the height effector.N.z above the effector's origin, so it may turn freely about its own axis.
+``tool-offset`` moves the origin along that axis. The pose of given struts is found by Newton's method from the last
 known pose.
 """
 

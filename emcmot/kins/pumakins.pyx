@@ -1,7 +1,7 @@
 """A Puma robot with six joints, described by Craig's A2, A3, D3, D4 (mm) and the tool's length D6.
 
-Eight sets of joints reach a pose: shoulder left or right, elbow up or down, wrist turned over or not. The joints take the
-set that is nearest to where they are. Switchable to the identity.
+Eight sets of joints reach a pose: shoulder left or right, elbow up or down, wrist turned over or not. The joints take
+the set that is nearest to where they are. Switchable to the identity.
 """
 
 from libc.math cimport M_PI, atan2, cos, fabs, hypot, sin, sqrt

@@ -1,5 +1,5 @@
-"""A SCARA robot: two arms that turn in the plane (joints 0, 1), a vertical slide (2) and a wrist (3); a and b follow
-(4, 5).
+"""A SCARA robot: two arms that turn in the plane (joints 0, 1), a vertical slide (2) and a wrist (3); a and b may
+follow (4, 5).
 
 Lengths (pins D1 .. D6): D1 height of the inner arm, D2 its length, D3 height of the outer arm above the inner one,
 D4 its length, D5 height of the outer arm above the tool's tip when joint 2 is 0, D6 distance of the tip from the
@@ -21,7 +21,9 @@ cdef enum:               # parameters
     D5 = 4
     D6 = 5
 
-JOINTS = 6
+cdef enum:
+    JOINTS = 6
+
 PARAMETERS = (("D1", 490.0), ("D2", 340.0), ("D3", 50.0), ("D4", 250.0), ("D5", 50.0), ("D6", 50.0))
 
 
@@ -34,8 +36,9 @@ cdef int forward(const Kinematics* kins, double* joints, double* pose) noexcept 
     pose[1] = d[D2] * sin(inner) + d[D4] * sin(outer) + d[D6] * sin(wrist)
     pose[2] = d[D1] + d[D3] - joints[2] - d[D5]
     pose[5] = wrist / DEGREE
-    pose[3] = joints[4]
-    pose[4] = joints[5]
+    if kins.joints == JOINTS:
+        pose[3] = joints[4]
+        pose[4] = joints[5]
     return 0
 
 
@@ -55,13 +58,15 @@ cdef int inverse(const Kinematics* kins, double* joints, double* pose) noexcept 
     joints[1] = elbow / DEGREE
     joints[2] = d[D1] + d[D3] - d[D5] - pose[2]
     joints[3] = pose[5] - joints[0] - joints[1]
-    joints[4] = pose[3]
-    joints[5] = pose[4]
+    if kins.joints == JOINTS:
+        joints[4] = pose[3]
+        joints[5] = pose[4]
     return 0
 
 
 def create(coordinates: str | None = None, sparm: str = "") -> KinematicsModule:
     cdef KinematicsModule module = KinematicsModule("scarakins", JOINTS, PARAMETERS)
+    module.fewest_joints = 4
     module.offer_switchable(forward, inverse, joint_letters("scarakins", coordinates, "xyzabc", JOINTS), sparm)
     return module
 

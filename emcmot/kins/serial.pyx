@@ -1,7 +1,7 @@
 """Chains of turning joints, described as J. J. Craig does it (modified Denavit-Hartenberg parameters), and a solver.
 
-A frame is a matrix of rotation ``r`` (row by row) and a place ``p``. A link goes ``a`` along the x axis of the frame before
-it, turns about that by ``alpha``, then turns about its own z axis by the joint's angle and goes ``d`` along it.
+A frame is a matrix of rotation ``r`` (row by row) and a place ``p``. A link goes ``a`` along the x axis of the frame
+before it, turns about that by ``alpha``, then turns about its own z axis by the joint's angle and goes ``d`` along it.
 """
 
 from libc.math cimport cos, fabs, sin

@@ -1,9 +1,10 @@
-"""Mills whose work lies on two rotary tables, one upon the other: three modules, which keep the tool's centre on the work.
+"""Mills whose work lies on two rotary tables, one upon the other: three modules, which keep the tool on the work.
 
 ``xyzac-trt-kins`` and ``xyzbc-trt-kins``: a rotary table (c) upon a tilting one (a or b). ``xyzab_tdr_kins``: a table
-about x (a) upon a table about y (b). The pose is the tool's place on the unturned work, and the joints x y z are where the
-slides must take the tool when the work has turned. Pins: ``x-rot-point`` .. the centre of the tables, ``x-offset`` .. from
-there to the axis of the lower table, ``tool-offset`` the tool's length where it counts. Switchable to the identity.
+about x (a) upon a table about y (b). The pose is the tool's place on the unturned work, and the joints x y z are where
+the slides must take the tool when the work has turned. Pins: ``x-rot-point`` .. the centre of the tables, ``x-offset``
+.. from there to the axis of the lower table, ``tool-offset`` the tool's length where it counts. Switchable to the
+identity.
 """
 
 from emcmot.kins.frames cimport turn_plane

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -123,3 +124,13 @@ def test_an_analog_output_switches_the_kinematics_and_pins_give_its_geometry() -
 def test_a_wrong_argument_of_a_kinematics_is_named(words: list[str], complaint: str) -> None:
     with pytest.raises(HalError, match=complaint):
         MotionHost(f"loadrt {' '.join(words)}")
+
+
+def test_a_function_that_overruns_its_period_is_counted_and_its_time_is_shown(machine: MotionHost) -> None:
+    comp = machine.host.component("slow")
+    comp.python_function("slow", lambda period: time.sleep(0.003))
+    comp.ready()
+    machine.host.add_function("slow", "servo-thread")
+    [thread] = machine.hal.segment.threads()
+    machine.wait(lambda s: thread.overruns > 0 and machine.hal.value("slow.tmax") > thread.period_ns, "an overrun")
+    machine.host.remove_function("slow", "servo-thread")

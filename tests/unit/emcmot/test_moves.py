@@ -166,6 +166,25 @@ def test_the_feed_override_scales_a_feed_up_to_its_maximum(scale: float, speed: 
     assert m["motion.feed-upm"] == pytest.approx(speed * 60)
 
 
+def test_the_status_shows_the_override_that_was_asked_for() -> None:
+    m = mill("coord")
+    m.send(C.FEED_SCALE, scale=3.0)
+    m.step()
+    assert (m.status.feed_scale, m.status.max_feed_scale) == (3.0, 1.0)
+
+
+def test_an_abort_with_nothing_queued_ends_a_pause_too() -> None:
+    m = mill("coord")
+    m.send(C.PAUSE)
+    m.step(2)
+    m.send(C.ABORT)
+    m.step(2)
+    assert not m.status.paused
+    line(m, 1)
+    m.run_until_rest()
+    assert m["joint.0.pos-cmd"] == pytest.approx(1.0)
+
+
 def test_feed_hold_acts_only_on_moves_that_enable_it_and_feed_inhibit_on_all() -> None:
     m = mill("coord")
     m.send(C.FH_ENABLE, mode=0)

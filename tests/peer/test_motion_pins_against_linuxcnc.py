@@ -1,0 +1,142 @@
+"""Motion's HAL pins after each step of a session are those of LinuxCNC: on, homed, jogged, fed, probed, stopped.
+
+The same script is the display of the same machine here and there (see ``stock_machine``); after each step, at rest,
+all pins of motion, two joints, an axis and a spindle are read with halcmd.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support import stock_machine
+from tests.support.stock_machine import needs_stock_machine
+
+pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
+
+SCRIPT = r'''
+s, c, e = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
+SHOWN = ("motion.", "joint.0.", "joint.1.", "axis.x.", "spindle.0.")
+
+def snap(name):
+    still = 0
+    before = None
+    while still < 8:
+        time.sleep(0.05)
+        s.poll()
+        now = (s.joint_position, s.inpos, s.exec_state, s.spindle[0]["speed"])
+        still = still + 1 if now == before else 0
+        before = now
+    rows = subprocess.run(["halcmd", "-s", "show", "pin"], capture_output=True, text=True).stdout.split("\n")
+    words = [row.split() for row in rows]
+    texts = []
+    while (message := e.poll()):
+        texts.append(message[1].strip())
+    out.append([name, {w[4]: w[3] for w in words if len(w) > 4 and w[4].startswith(SHOWN)}, texts])
+
+def do(call, *args):
+    call(*args)
+    c.wait_complete(10)
+
+def until(condition, seconds=20):
+    end = time.time() + seconds
+    while not condition() and time.time() < end:
+        s.poll()
+        time.sleep(0.01)
+
+def setp(name, value):
+    subprocess.run(["halcmd", "setp", name, str(value)])
+
+def mdi(name, *lines):
+    for line in lines:
+        do(c.mdi, line)
+    snap(name)
+
+time.sleep(1.0)
+do(c.state, linuxcnc.STATE_ESTOP_RESET)
+snap("out of E-stop")
+do(c.state, linuxcnc.STATE_ON)
+snap("on")
+c.jog(linuxcnc.JOG_INCREMENT, True, 0, 20, 5)
+until(lambda: s.joint[0]["output"] > 4.9)
+snap("jogged a joint")
+do(c.home, 0)
+until(lambda: s.homed[0])
+do(c.teleop_enable, 0)
+do(c.home, -1)
+until(lambda: all(s.homed[:3]))
+snap("homed")
+do(c.teleop_enable, 1)
+c.jog(linuxcnc.JOG_INCREMENT, False, 0, 20, 3)
+until(lambda: s.position[0] > 2.9)
+snap("jogged an axis")
+c.jog(linuxcnc.JOG_CONTINUOUS, False, 0, 50)
+until(lambda: s.position[0] > 199.9)
+snap("jogged to the limit")
+c.jog(linuxcnc.JOG_INCREMENT, False, 0, -50, 200)
+until(lambda: s.position[0] < 0.1)
+snap("jogged back")
+do(c.teleop_enable, 0)
+snap("joint mode")
+do(c.mode, linuxcnc.MODE_MDI)
+snap("MDI")
+mdi("fed", "G21 G90 G1 X10 F600")
+mdi("an arc", "G2 X10 Y0 I5 F1200")
+mdi("spindle on", "M3 S1000")
+mdi("outputs wait", "M62 P1", "M67 E1 Q2.5")
+mdi("outputs with a move", "G1 X5 F600")
+mdi("outputs at once", "M63 P1", "M65 P1", "M64 P2", "M68 E2 Q-1")
+c.spindleoverride(0.5)
+c.wait_complete(5)
+snap("override")
+mdi("spindle off", "M5")
+c.mdi("M19 R90")
+time.sleep(0.3)
+snap("orienting")
+setp("spindle.0.is-oriented", 1)
+c.wait_complete(5)
+snap("oriented")
+setp("spindle.0.is-oriented", 0)
+mdi("on after M19", "M4 S500")
+setp("spindle.0.inhibit", 1)
+snap("inhibited")
+setp("spindle.0.inhibit", 0)
+mdi("probed nothing", "G38.3 X15 F600")
+mdi("probe fails", "G38.2 X20 F600")
+do(c.mode, linuxcnc.MODE_MANUAL)
+setp("motion.enable", 0)
+snap("enable taken away")
+setp("motion.enable", 1)
+do(c.state, linuxcnc.STATE_ON)
+snap("on again")
+setp("joint.1.amp-fault-in", 1)
+snap("amplifier fault")
+'''
+# what differs, and why
+OF_OTHER_CODE = ("time", "last-period", "free-pos-cmd", "free-vel-lim", "teleop-vel-lim")  # the planners' own insides
+UNTIL_ABORT = ("joint.1.error",)  # LinuxCNC's task aborts after a fault, which clears it
+ROUNDING = 1e-6
+
+
+def same(ours: str, theirs: str) -> bool:
+    try:
+        return abs(float(ours) - float(theirs)) <= ROUNDING
+    except ValueError:
+        return ours == theirs
+
+
+def test_pins_and_texts_are_those_of_linuxcnc_after_every_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    theirs = stock_machine.display(SCRIPT)
+    ours = stock_machine.ours(tmp_path, SCRIPT)
+    assert [row[0] for row in ours] == [row[0] for row in theirs]
+    found = []
+    for (name, pins, texts), (_, stock_pins, stock_texts) in zip(ours, theirs, strict=True):
+        assert texts == stock_texts, name
+        for pin, value in stock_pins.items():
+            if not pin.endswith(OF_OTHER_CODE + UNTIL_ABORT) and not same(pins[pin], value):
+                found.append(f"{name}: {pin} is {pins[pin]}, LinuxCNC's {value}")
+    assert not found, "\n".join(found)
