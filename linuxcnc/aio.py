@@ -65,7 +65,6 @@ class _Orders(command):
     def __init__(self) -> None:
         super().__init__()
         self._errors: Channel = open_channel("emcError")
-        self._texts: list[tuple[int, str]] = []
         self._began = False
         self._replaced_by = 0
 
@@ -81,18 +80,15 @@ class _Orders(command):
         self._began, self._replaced_by = False, 0
         getattr(self, method)(*arguments)
         code = self.wait_complete(FOREVER)
-        while (message := self._errors.read()) is not None:
-            self._texts.append((_serial_of(message), text_of(message)))
-        messages = tuple(text for serial, text in self._texts if serial == self.serial)
-        self._texts.clear()
-        return Result(self._outcome(code), self.serial, messages)
+        told = [message for message in iter(self._errors.read, None) if _serial_of(message) == self.serial]
+        failed = code == const.RCS_ERROR or any(isinstance(message, emc.EMC_OPERATOR_ERROR) for message in told)
+        return Result(self._outcome(failed), self.serial, tuple(map(text_of, told)))
 
-    def _outcome(self, code: int) -> Outcome:
-        if self._replaced_by in ENDS_OTHERS:
-            return Outcome.ABORTED
-        if code == const.RCS_DONE:
-            return Outcome.DONE
-        return Outcome.FAILED if self._began else Outcome.REFUSED
+    def _outcome(self, failed: bool) -> Outcome:
+        """``failed``: the status or a message says so; the status of a short order may be over before it was seen."""
+        if failed:
+            return Outcome.FAILED if self._began else Outcome.REFUSED
+        return Outcome.ABORTED if self._replaced_by in ENDS_OTHERS else Outcome.DONE
 
 
 def _serial_of(message: Message) -> int:

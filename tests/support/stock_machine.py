@@ -182,7 +182,8 @@ def _run(
         command += ["sh", "-c", ENTER.format(user=USER), "sh", str(folder), sys.executable, str(folder / "client.py")]
         command += [str(SOURCE)]
         process = subprocess.run(command, timeout=seconds)
-        logs = "".join((folder / name).read_text(errors="replace")[-3000:] for name in ("machine.log", "client.log"))
+        found = [folder / name for name in ("machine.log", "client.log", "linuxcnc_debug.txt")]
+        logs = "".join(path.read_text(errors="replace")[-3000:] for path in found if path.exists())
         assert process.returncode == 0 and (folder / "out.json").exists(), logs
         return json.loads((folder / "out.json").read_text())
     finally:
