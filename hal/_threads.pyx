@@ -66,10 +66,12 @@ cdef extern from *:
         return t.tv_sec * 1000000000LL + t.tv_nsec;
     }
     #endif
+    #define prefetch(where) __builtin_prefetch(where)
     #define atomic_load(where) __atomic_load_n(where, __ATOMIC_SEQ_CST)
     #define atomic_store(where, value) __atomic_store_n(where, value, __ATOMIC_SEQ_CST)
     #define atomic_swap(where, value) __atomic_exchange_n(where, value, __ATOMIC_SEQ_CST)
     """
+    void prefetch(void* where) nogil
     int64_t ticks() nogil  # the processor's counter: a tenth of the cost of asking the system
     int32_t load_int "atomic_load"(int32_t* where) nogil
     void store_int "atomic_store"(int32_t* where, int32_t value) nogil
@@ -84,6 +86,8 @@ cdef enum:
     MAX_HAL_THREADS = 32
     STACK_BYTES = 1 << 20
     LONGEST_SLEEP_NS = 10_000_000  # how late a new thread may be seen
+    AHEAD = 2  # functions
+    FAR_AHEAD = 4
     GRACE_TRIES = 20000  # of 100 us: how long a function may take before its thread counts as stuck
 
 cdef double CATCH_UP_NS = 50e6  # host time
@@ -93,9 +97,11 @@ cdef int64_t ANNOUNCE_NS = 900_000  # host time
 cdef struct Call:
     hal_function code
     void* arg
+    void* first  # what `arg` points to begins with: the first pin of a declared component
     hal_pin time  # s32, ns
     hal_cell* tmax  # s32, ns; a parameter's cell never moves
     hal_cell* increased  # bit
+    int64_t longest  # ticks: what tmax stands for, so that most periods need not look at it
     bint was_increased
 
 cdef struct Calls:
@@ -148,8 +154,25 @@ cdef void measure_ticks() noexcept nogil:
     ns_per_tick = (end_ns - begin_ns) / <double>(ticks() - begin)
 
 
+cdef void* first_word(void** arg) noexcept nogil:
+    return NULL if arg == NULL else arg[0]
+
+
+cdef void keep_longest(Call* call, int32_t took, int64_t took_ticks) noexcept nogil:
+    """A period longer than all before, or the one after it."""
+    if took > call.tmax.s:
+        call.tmax.s = took
+        call.longest = took_ticks
+        call.increased.b = call.was_increased = 1
+    else:
+        call.increased.b = call.was_increased = 0
+
+
 cdef void run_calls(HalThread* thread) noexcept nogil:
-    """One period: every function in order, each with its time."""
+    """One period: every function in order, each with its time.
+
+    Between two periods the processor's caches forget most of what functions touch, so it is fetched some functions ahead.
+    """
     cdef Calls* calls = load_calls(&thread.calls)
     cdef int64_t begin = ticks()
     cdef int64_t before = begin
@@ -159,16 +182,21 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
     cdef int i
     for i in range(calls.count):
         call = &calls.call[i]
+        if i + FAR_AHEAD < calls.count:
+            prefetch(calls.call[i + FAR_AHEAD].arg)
+            prefetch(calls.call[i + FAR_AHEAD].time)
+        if i + AHEAD < calls.count:
+            prefetch(calls.call[i + AHEAD].first)
         call.code(call.arg, thread.period_ns)
         after = ticks()
         took = <int32_t>((after - before) * ns_per_tick)
-        before = after
         hal_at(call.time).s = took
-        if took > call.tmax.s:
-            call.tmax.s = took
-            call.increased.b = call.was_increased = 1
-        elif call.was_increased:
-            call.increased.b = call.was_increased = 0
+        if after - before > call.longest or call.was_increased:
+            keep_longest(call, took, after - before)
+        before = after
+    if calls.count > 0:  # one function each period: has somebody set its tmax?
+        call = &calls.call[thread.record.cycles % <uint64_t>calls.count]
+        call.longest = <int64_t>(call.tmax.s / ns_per_tick)
     took = <int32_t>((after - begin) * ns_per_tick)
     hal_at(thread.time).s = took
     if took > hal_at(thread.tmax).s:
@@ -264,8 +292,8 @@ cdef class NativeThread:
             raise MemoryError
         fresh.count = len(calls)
         for i, (code, arg, time, tmax, increased) in enumerate(calls):
-            fresh.call[i] = Call(<hal_function>code, <void*>arg, <hal_pin>time, hal_at(<hal_pin>tmax),
-                                 hal_at(<hal_pin>increased), True)
+            fresh.call[i] = Call(<hal_function>code, <void*>arg, first_word(<void**>arg), <hal_pin>time,
+                                 hal_at(<hal_pin>tmax), hal_at(<hal_pin>increased), 0, True)
         old = swap_calls(&self.thread.calls, fresh)
         if not self.pause():
             return False

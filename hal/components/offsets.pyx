@@ -1,6 +1,6 @@
 """Components that offset positions or turn wheel counts into movement: moveoff, eoffset_per_angle, anglejog. See ``declare.py``."""
 
-from libc.math cimport M_PI, cos, fabs, fmod, sin
+from libc.math cimport M_PI, copysign, cos, fabs, fmod, sin
 from libc.stdint cimport int32_t, uint8_t
 
 from hal._messages cimport say
@@ -240,6 +240,7 @@ cdef int next_state(EoffsetPerAngle* s) noexcept nogil:
 
 cdef void eoffset_per_angle(EoffsetPerAngle* s, long period) noexcept nogil:
     cdef double k = at(s.k).u if at(s.k).u > 0 else 10000.0
+    cdef double counts
     at(s.kreciprocal).f = 1.0 / k
     at(s.is_off).b = not at(s.is_on).b
     if not at(s.is_on).b:
@@ -248,7 +249,8 @@ cdef void eoffset_per_angle(EoffsetPerAngle* s, long period) noexcept nogil:
     at(s.enable_out).b = s.state == RUNNING or s.state == CLEARING
     at(s.clear).b = (s.state == RUNNING and not at(s.enable_in).b) or (s.state == CLEARING and at(s.clear).b)
     if s.state == RUNNING and at(s.enable_in).b and possible(s):
-        at(s.kcounts).s = <int32_t>(k * offset_at(s, at(s.angle).f - at(s.start_angle).f))
+        counts = k * offset_at(s, at(s.angle).f - at(s.start_angle).f)
+        at(s.kcounts).s = <int32_t>(counts + copysign(1e-6, counts))  # whole ones stay what they are
     else:
         at(s.kcounts).s = 0
     at(s.eoffset_dbg).f = at(s.kcounts).s / k
@@ -281,6 +283,9 @@ cdef void anglejog(Anglejog* s, long period) noexcept nogil:
     cdef double angle, scale
     at(s.enable_out).b = at(s.enable_in).b
     if not at(s.enable_in).b:
+        angle = at(s.angle_degrees_in).f * M_PI / 180.0
+        at(s.cos_accel_fraction).f = at(s.accel_fraction_in).f * fabs(cos(angle))
+        at(s.sin_accel_fraction).f = at(s.accel_fraction_in).f * fabs(sin(angle))
         s.factor = max(at(s.iscale_factor).s, 1)
         at(s.current_scale).f = at(s.scale_in).f
         at(s.current_scale_out).f = at(s.scale_in).f / s.factor
@@ -293,8 +298,6 @@ cdef void anglejog(Anglejog* s, long period) noexcept nogil:
         return
     angle = at(s.current_angle_degrees).f * M_PI / 180.0
     scale = at(s.current_scale_out).f
-    at(s.cos_accel_fraction).f = at(s.accel_fraction_in).f * fabs(cos(angle))
-    at(s.sin_accel_fraction).f = at(s.accel_fraction_in).f * fabs(sin(angle))
     at(s.active).b = approach(&s.way, (at(s.counts_in).s - s.counts_from) * at(s.current_scale).f,
                               at(s.max_vel).f, at(s.max_accel).f, period * 1e-9)
     at(s.current_mag).f, at(s.current_vel).f = s.way.pos, s.way.vel

@@ -107,21 +107,23 @@ cdef struct SpindleMonitor:
     hal_pin spindle_is_on, spindle_command, spindle_feedback, spindle_at_speed, spindle_underspeed, level, threshold
 
 cdef void spindle_monitor(SpindleMonitor* s, long period) noexcept nogil:
-    """level: 0 off, 1 coming up to speed, 2 at speed; only after 2 too slow counts."""
-    cdef bint there = fabs(at(s.spindle_command).f - at(s.spindle_feedback).f) <= at(s.threshold).f
+    """level: 0 off, 1 coming up to speed, 2 it was at speed; both outputs stay until the spindle is switched off."""
+    cdef double short = at(s.spindle_command).f - at(s.spindle_feedback).f
     if not at(s.spindle_is_on).b:
-        at(s.level).u = 0
-    elif at(s.level).u == 0:
+        at(s.level).u = at(s.spindle_at_speed).b = at(s.spindle_underspeed).b = 0
+        return
+    if at(s.level).u == 0:
         at(s.level).u = 1
-    if at(s.level).u == 1 and there:
+    if at(s.level).u == 1 and fabs(short) < at(s.threshold).f:
         at(s.level).u = 2
-    at(s.spindle_at_speed).b = at(s.level).u == 2 and there
-    at(s.spindle_underspeed).b = at(s.level).u == 2 and not there
+        at(s.spindle_at_speed).b = 1
+    if at(s.level).u == 2 and short > at(s.threshold).f:
+        at(s.spindle_underspeed).b = 1
 
 declare("spindle_monitor", "Whether a spindle reached its speed, and keeps it", sizeof(SpindleMonitor), [
     pin_in(BIT, "spindle-is-on"), pin_in(FLOAT, "spindle-command"), pin_in(FLOAT, "spindle-feedback"),
-    pin_out(BIT, "spindle-at-speed"), pin_out(BIT, "spindle-underspeed", "it was at speed and is not any more"),
-    param_rw(U32, "level", "0 off, 1 coming up, 2 at speed"), param_rw(FLOAT, "threshold", "largest difference of the two"),
+    pin_out(BIT, "spindle-at-speed", "it has reached its speed"), pin_out(BIT, "spindle-underspeed", "and was too slow since"),
+    param_rw(U32, "level", "0 off, 1 coming up, 2 it was at speed"), param_rw(FLOAT, "threshold", "largest difference of the two"),
 ], {"": <size_t>&spindle_monitor})
 
 
@@ -136,7 +138,8 @@ cdef struct Thc:
 cdef void thc(Thc* s, long period) noexcept nogil:
     cdef double z = at(s.z_pos_in).f, error, slow
     at(s.volts).f = max((at(s.encoder_vel).f - at(s.scale_offset).f) * at(s.vel_scale).f, 0.0)
-    slow = at(s.requested_vel).f * (1.0 - at(s.vel_tol).f * 0.01)
+    at(s.offset_value).f = s.offset
+    slow = at(s.requested_vel).f * (1.0 - at(s.velocity_tol).f * 0.01)
     at(s.vel_status).b = at(s.requested_vel).f > 0.0 and at(s.current_vel).f >= slow
     if at(s.enable).b and at(s.torch_on).b and at(s.arc_ok).b and at(s.vel_status).b:
         error = at(s.volts_requested).f - at(s.volts).f  # too few volts: the torch is too low
@@ -149,16 +152,15 @@ cdef void thc(Thc* s, long period) noexcept nogil:
     s.old_z = z
     at(s.z_pos_out).f = z + s.offset
     at(s.z_fb_out).f = z
-    at(s.offset_value).f = s.offset
 
 declare("thc", "Height of a plasma torch by its voltage", sizeof(Thc), [
     pin_in(FLOAT, "encoder-vel", "frequency that stands for the voltage"), pin_in(FLOAT, "current-vel", "from motion.current-vel"),
     pin_in(FLOAT, "requested-vel", "from motion.requested-vel"), pin_in(FLOAT, "volts-requested"),
-    pin_in(FLOAT, "vel-tol", "percent that the torch may be slower and still correct"), pin_in(BIT, "torch-on", "from spindle.N.on"),
+    pin_in(FLOAT, "vel-tol", "without effect; velocity-tol counts"), pin_in(BIT, "torch-on", "from spindle.N.on"),
     pin_in(BIT, "arc-ok"), pin_in(BIT, "enable", "false: no correction"), pin_in(FLOAT, "z-pos-in", "from axis.N.motor-pos-cmd"),
     pin_out(FLOAT, "z-pos-out", "z-pos-in with the correction"), pin_out(FLOAT, "z-fb-out", "feedback without it"),
-    pin_out(FLOAT, "volts"), pin_out(BIT, "vel-status", "fast enough to correct"), pin_out(FLOAT, "offset-value", "correction"),
+    pin_out(FLOAT, "volts"), pin_out(BIT, "vel-status", "fast enough to correct"), pin_out(FLOAT, "offset-value", "correction of the period before"),
     param_rw(FLOAT, "vel-scale", "volts for a Hz"), param_rw(FLOAT, "scale-offset", "Hz at 0 volts"),
-    param_rw(FLOAT, "velocity-tol", "without effect; vel-tol counts"),
+    param_rw(FLOAT, "velocity-tol", "percent that the torch may be slower and still correct"),
     param_rw(FLOAT, "voltage-tol", "volts off without correction"), param_rw(FLOAT, "correction-vel", "units of Z in a period"),
 ], {"": <size_t>&thc}, most=1, takes_names=False, instance="thc")

@@ -1,5 +1,6 @@
 """Components that watch and tell: watchdog, message, and the buttons of a pendant, xhc_hb04_util. See ``declare.py``."""
 
+from libc.math cimport floor
 from libc.stdint cimport int32_t, int64_t, uint8_t
 
 from hal._messages cimport say
@@ -56,7 +57,7 @@ cdef void watchdog_set_timeouts(Watchdogs* all_, long period) noexcept nogil:
             s.quiet_ns[i] = 0
             s.old[i] = at(s.input[i]).b
     if enable and not s.old_enable:
-        s.watching = 1
+        s.watching = at(s.ok_out).b = 1
     s.old_enable = enable
 
 
@@ -142,16 +143,22 @@ cdef struct XhcHb04Util:
     hal_pin coef[FILTERS]
     hal_pin divide_by_k_in, divide_by_k_out, k
     double value[FILTERS]
+    uint8_t old_pressed
 
 cdef void xhc_hb04_util(XhcHb04Util* s, long period) noexcept nogil:
+    """What the button means is decided when it goes down, and stays until it is let go."""
     cdef bint pressed = at(s.start_or_pause).b != 0
     cdef int i
-    at(s.resume).b = pressed and at(s.is_paused).b
-    at(s.run).b = pressed and at(s.is_idle).b and not at(s.is_paused).b
-    at(s.pause).b = pressed and at(s.is_running).b and not at(s.is_paused).b
+    if not pressed:
+        at(s.run).b = at(s.pause).b = at(s.resume).b = 0
+    elif not s.old_pressed:
+        at(s.run).b = at(s.is_idle).b
+        at(s.pause).b = at(s.is_running).b and not at(s.is_idle).b
+        at(s.resume).b = at(s.is_paused).b and not at(s.is_running).b and not at(s.is_idle).b
+    s.old_pressed = pressed
     for i in range(FILTERS):
         s.value[i] += (at(s.in_[i]).s * at(s.scale[i]).f - s.value[i]) * at(s.coef[i]).f
-        at(s.out[i]).s = <int32_t>s.value[i]
+        at(s.out[i]).s = <int32_t>floor(s.value[i] + 0.5)
     if at(s.k).f != 0.0:
         at(s.divide_by_k_out).f = at(s.divide_by_k_in).f / at(s.k).f
 

@@ -272,6 +272,37 @@ CASES = {
         "sim_matrix_kb", "sim-matrix-kb.0", " ".join(f"b:sim-matrix-kb.0.button.c0{i}.r0{7 - i}" for i in range(8)),
         "u:sim-matrix-kb.0.out", lambda chance: ([i // 5 % 17 == 2 * key for key in range(8)] for i in range(SAMPLES)),
     ),
+    "watchdog": Case(
+        "watchdog num_inputs=2", "watchdog.process watchdog.set-timeouts",
+        "b:watchdog.input-0 b:watchdog.input-1 b:watchdog.enable-in", "b:watchdog.ok-out",
+        lambda chance: ([i // 3 % 2, i // (2 if i % 150 < 90 else 9) % 2, i % 100 > 5] for i in range(SAMPLES)),
+        "watchdog.timeout-0=0.0045 watchdog.timeout-1=0.0055",
+    ),
+    "xhc_hb04_util": Case(
+        "xhc_hb04_util names=x", "x",
+        "b:x.start-or-pause b:x.is-paused b:x.is-idle b:x.is-running s:x.in1 f:x.divide-by-k-in",
+        "b:x.pause b:x.resume b:x.run s:x.out1 f:x.divide-by-k-out", noise(True, True, True, True, 100, 5.0),
+        "x.coef1=0.2 x.scale1=3 x.k=4",
+    ),
+    "anglejog": Case(
+        "anglejog names=a", "a", "s:a.counts-in b:a.enable-in",
+        "b:a.enable-out f:a.current-scale f:a.current-scale-out s:a.coscounts s:a.sincounts f:a.cos-accel-fraction "
+        "f:a.sin-accel-fraction b:a.active f:a.current-mag f:a.current-vel",
+        lambda chance: ([i // 40 * 3, i > 20] for i in range(SAMPLES)),
+        "a.angle-degrees-in=30 a.scale-in=0.1 a.max-vel=10 a.max-accel=300", 1e-3,
+    ),
+    "eoffset_per_angle": Case(
+        "eoffset_per_angle names=e", "e", "f:e.angle b:e.enable-in b:e.is-on s:e.fnum",
+        "s:e.kcounts f:e.kreciprocal b:e.enable-out b:e.clear b:e.is-off",
+        lambda chance: ([i * 7 % 360, i % 90 > 20, i < 370, i // 90] for i in range(SAMPLES)),
+        "e.fmult=4 e.radius-ref=10 e.start-angle=15",
+    ),
+    "limit3": Case(
+        "limit3", "limit3.0", "f:limit3.0.in b:limit3.0.enable", "f:limit3.0.out",
+        lambda chance: ([40.0 if i // 100 % 2 else -7.3, i < 350] for i in range(SAMPLES)),
+        "limit3.0.maxv=900 limit3.0.maxa=20000 limit3.0.min=-5.5 limit3.0.max=33.3",
+        0.03,  # rounding may move the last step by a period
+    ),
     "histobins": Case(
         "histobins", "histobins.0", "f:histobins.0.input s:histobins.0.index b:histobins.0.reset",
         "s:histobins.0.check f:histobins.0.binvalue f:histobins.0.pextra f:histobins.0.nextra "
