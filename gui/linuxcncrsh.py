@@ -16,6 +16,7 @@ import contextlib
 import os
 import re
 import signal
+import socket
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -26,6 +27,7 @@ from gui.rsh_session import EOL, Session
 from nml import namespace
 
 PORT = 5007
+LOCALHOST = "localhost"
 CONNECT_PASSWORD = "EMC"
 ENABLE_PASSWORD = "EMCTOO"
 SERVER_NAME = "EMCNETSVR"
@@ -92,11 +94,11 @@ class Server:
 
     # --- connections -----------------------------------------------------------------------------------------------
 
-    async def serve(self, address: str | None, port: int) -> None:
+    async def serve(self, sockets: list[socket.socket]) -> None:
         """Serve until a client shuts the machine down or a signal comes; the port is written to the runtime folder."""
-        listener = await asyncio.start_server(self._connected, address, port)
+        listeners = [await asyncio.start_server(self._connected, sock=one) for one in sockets]
         port_file = namespace.runtime_dir() / "linuxcncrsh.port"
-        port_file.write_text(f"{listener.sockets[0].getsockname()[1]}\n")
+        port_file.write_text(f"{sockets[0].getsockname()[1]}\n")
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._end.set)
@@ -104,7 +106,8 @@ class Server:
             await self._end.wait()
         finally:
             self.over = True
-            listener.close()
+            for listener in listeners:
+                listener.close()
             port_file.unlink(missing_ok=True)
 
     async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -159,9 +162,9 @@ def main(arguments: list[str] | None = None) -> int:
         os.environ["INI_FILE_NAME"] = options.ini
     address = options.bind
     if address is None:
-        address = "localhost" if options.connectpw == CONNECT_PASSWORD else ""
+        address = LOCALHOST if options.connectpw == CONNECT_PASSWORD else ""
     try:
-        asyncio.run(_serve(options, address or None))
+        asyncio.run(_serve(options, listening(address, options.port)))
     except (OSError, linuxcnc.error) as reason:
         print(f"linuxcncrsh: {reason}", file=sys.stderr)
         return 1
@@ -170,9 +173,22 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-async def _serve(options: argparse.Namespace, address: str | None) -> None:
+async def _serve(options: argparse.Namespace, sockets: list[socket.socket]) -> None:
     with contextlib.suppress(asyncio.CancelledError):
-        await Server(options).serve(address, options.port)
+        await Server(options).serve(sockets)
+
+
+def listening(address: str, port: int) -> list[socket.socket]:
+    """Sockets of one port, for IPv4 and IPv6 where this host has both; an empty address means all of them."""
+    if not address and socket.has_dualstack_ipv6():
+        return [socket.create_server(("", port), family=socket.AF_INET6, dualstack_ipv6=True)]
+    if address != LOCALHOST:
+        family = socket.AF_INET6 if ":" in address else socket.AF_INET
+        return [socket.create_server((address, port), family=family)]
+    sockets = [socket.create_server(("127.0.0.1", port))]
+    with contextlib.suppress(OSError):
+        sockets.append(socket.create_server(("::1", sockets[0].getsockname()[1]), family=socket.AF_INET6))
+    return sockets
 
 
 def _word(text: str) -> str:
