@@ -9,6 +9,8 @@ import signal
 import sys
 from collections.abc import Sequence
 
+from emcio.changer import Changer
+from emcio.changer2 import FaultingChanger
 from emcio.controller import IoChannels, IoController
 from emcio.database import DatabaseTools
 from emcio.pins import make_component
@@ -26,13 +28,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run io until SIGTERM or a halt command; the exit code."""
     parser = argparse.ArgumentParser(prog="io", description=__doc__)
     parser.add_argument("-ini", metavar="FILE", default=os.environ.get("INI_FILE_NAME"), help="the machine's INI file")
+    parser.add_argument("-v2", action="store_true", help="be iov2: a tool changer that reports faults")
+    parser.add_argument("-support-start-change", action="store_true", help="iov2: M6 begins with start-change")
     options = parser.parse_args(arguments)
     if not options.ini:
         print("io: no INI file; give -ini FILE or set INI_FILE_NAME", file=sys.stderr)
         return 1
     os.environ["INI_FILE_NAME"] = options.ini
     try:
-        controller = build(IniFile(options.ini))
+        controller = build(IniFile(options.ini), faults=options.v2, announces=options.support_start_change)
     except PyemcError as error:
         print(error, file=sys.stderr)
         return 1
@@ -50,8 +54,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def build(ini: IniFile) -> IoController:
-    """The controller that the INI file describes; ConfigError when it describes none."""
+def build(ini: IniFile, *, faults: bool = False, announces: bool = False) -> IoController:
+    """The controller that the INI file describes; ConfigError when it describes none.
+
+    ``faults``: the tool changer reports faults (iov2); ``announces``: and M6 begins with start-change.
+    """
     cycle_s = ini.real("EMCIO", "CYCLE_TIME", DEFAULT_CYCLE_S, maximum=10.0)
     store = ToolStore(ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False))
     source = tool_source(ini)
@@ -64,7 +71,9 @@ def build(ini: IniFile) -> IoController:
         table=Channel(config, "toolTable", process="tool"),
         errors=Channel(config, "emcError", process="emc"),
     )
-    return IoController(make_component(), store, source, channels, cycle_s if cycle_s > 0.0 else 0.001)
+    pins = make_component(faults)
+    changer = FaultingChanger(store, pins, announces) if faults else Changer(store, pins)
+    return IoController(pins, store, source, channels, cycle_s if cycle_s > 0.0 else 0.001, changer)
 
 
 def tool_source(ini: IniFile) -> ToolSource:

@@ -33,6 +33,8 @@ class Changer:
         self.must_save = False
         self.spindle_events: list[tuple[str, int, int]] = []
         """Loads and unloads for a tool data base: (letter, tool number, pocket)."""
+        self.fault = self.reason = 0
+        """What a changer that can tell reports: is there a fault, and its number."""
         self._waiting = ""
         self._target = 0
         self._settle_until = 0.0
@@ -47,6 +49,13 @@ class Changer:
     def in_spindle(self) -> int:
         """Number of the tool in the spindle."""
         return self.store.in_spindle
+
+    def start_change(self) -> None:
+        """M6 begins."""
+
+    def take_problem(self) -> str:
+        """Why the request under way failed, told once."""
+        return ""
 
     def prepare(self, toolno: int) -> None:
         """T word. ValueError for a tool that is not in the table."""
@@ -85,7 +94,7 @@ class Changer:
             raise ValueError(f"index {index} of the tool table holds no tool")
         if index or not self.store.random:
             self._put(index)
-        if not self.store.in_spindle:
+        if self.store.in_spindle <= 0:
             self.from_pocket = 0
         self.pins["tool-from-pocket"] = self.from_pocket
 
@@ -106,14 +115,14 @@ class Changer:
         else:
             pocket = self.store.pocket_of(self._target)
             self._put(self._target)
-            self.from_pocket = pocket if self.store.in_spindle else 0
+            self.from_pocket = pocket if self.store.in_spindle > 0 else 0
             self.pins["tool-from-pocket"] = self.from_pocket
             self.prepared = NONE_PREPARED
             self._announce(0, 0)
         self.pins[self._waiting] = False
         self._waiting = ""
 
-    def abort(self) -> None:
+    def abort(self, reason: int) -> None:
         """Take requests back; a prepared tool stays prepared, one that was being changed stays where it was."""
         self._waiting = ""
         self.pins["tool-prepare"] = False

@@ -44,6 +44,7 @@ from nml.emc import (
     EMC_TOOL_START_CHANGE,
     EMC_TOOL_UNLOAD,
 )
+from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.tooltable import EMC_TOOL_TABLE
 from nml.message import Message
 
@@ -77,13 +78,14 @@ class IoController:
         source: ToolSource,
         channels: IoChannels,
         cycle_s: float,
+        changer: Changer,
     ) -> None:
         self.pins = pins
         self.store = store
         self.source = source
         self.channels = channels
         self.cycle_s = cycle_s
-        self.changer = Changer(store, pins)
+        self.changer = changer
         self.running = True
         self.status = EMC_IO_STAT(status=DONE, cycleTime=cycle_s)
         self.table = EMC_TOOL_TABLE()
@@ -96,7 +98,7 @@ class IoController:
             EMC_TOOL_HALT.TYPE_ID: self._halt,
             EMC_TOOL_ABORT.TYPE_ID: self._abort,
             EMC_TOOL_PREPARE.TYPE_ID: lambda command: self.changer.prepare(command.tool),
-            EMC_TOOL_START_CHANGE.TYPE_ID: self._nothing,
+            EMC_TOOL_START_CHANGE.TYPE_ID: lambda command: self.changer.start_change(),
             EMC_TOOL_LOAD.TYPE_ID: lambda command: self.changer.load(),
             EMC_TOOL_UNLOAD.TYPE_ID: lambda command: self.changer.unload(),
             EMC_TOOL_SET_NUMBER.TYPE_ID: lambda command: self.changer.set_number(command.tool),
@@ -137,7 +139,7 @@ class IoController:
             self.pins["user-request-enable"] = False
         self.changer.poll()
         self._follow_table()
-        failure = self.source.failure()
+        failure = self.changer.take_problem() or self.source.failure()
         if failure:
             self._complain(failure)
         self._fill_status()
@@ -173,8 +175,8 @@ class IoController:
     def _halt(self, command: Message) -> None:
         self.running = False
 
-    def _abort(self, command: Message) -> None:
-        self.changer.abort()
+    def _abort(self, command: EMC_TOOL_ABORT | EMC_IO_ABORT) -> None:
+        self.changer.abort(command.reason if isinstance(command, EMC_TOOL_ABORT) else Reason.TASK_ABORT)
         self._coolant("mist", False)
         self._coolant("flood", False)
 
@@ -226,7 +228,7 @@ class IoController:
     def _all_off(self) -> None:
         for name in ("user-enable-out", "user-request-enable", "coolant-mist", "coolant-flood", "lube"):
             self.pins[name] = False
-        self.changer.abort()
+        self.changer.abort(Reason.TASK_STATE_ESTOP)
 
     # --- Reports
 
@@ -255,6 +257,7 @@ class IoController:
         status.coolant.flood = int(self.pins["coolant-flood"])
         status.lube.on = int(self.pins["lube"])
         status.lube.level = int(self.pins["lube_level"])
+        status.fault, status.reason = self.changer.fault, self.changer.reason
         status.tool.pocketPrepped = self.changer.prepared
         status.tool.toolInSpindle = self.changer.in_spindle
         status.tool.toolFromPocket = self.changer.from_pocket

@@ -25,11 +25,25 @@ PINS = {
     "tool-changed": (hal.HAL_BIT, hal.HAL_IN),
 }
 
+FAULT_PINS = {
+    "emc-abort": (hal.HAL_BIT, hal.HAL_OUT),
+    "emc-abort-ack": (hal.HAL_BIT, hal.HAL_IN),
+    "emc-reason": (hal.HAL_S32, hal.HAL_OUT),
+    "start-change": (hal.HAL_BIT, hal.HAL_OUT),
+    "start-change-ack": (hal.HAL_BIT, hal.HAL_IN),
+    "toolchanger-fault": (hal.HAL_BIT, hal.HAL_IN),
+    "toolchanger-fault-ack": (hal.HAL_BIT, hal.HAL_OUT),
+    "toolchanger-reason": (hal.HAL_S32, hal.HAL_IN),
+    "toolchanger-faulted": (hal.HAL_BIT, hal.HAL_OUT),
+    "toolchanger-clear-fault": (hal.HAL_BIT, hal.HAL_IN),
+}
+"""What ``iov2`` has besides."""
 
-def make_component() -> Any:
-    """The component ``iocontrol`` with its pins, ready."""
+
+def make_component(faults: bool) -> Any:
+    """The component ``iocontrol`` with its pins, ready; ``faults``: with those of ``iov2``."""
     component = hal.component("iocontrol", "iocontrol.0")
-    for name, (kind, direction) in PINS.items():
+    for name, (kind, direction) in (PINS | FAULT_PINS if faults else PINS).items():
         component.newpin(name, kind, direction)
     component.ready()
     return component

@@ -22,9 +22,12 @@ class ToolStore:
 
     def __init__(self, random: bool) -> None:
         self.random = random
-        self.entries: list[Tool] = [Tool() for _ in range(CANON_POCKETS_MAX)]
+        self.entries = self._empty()
         self.entries[0] = Tool(pocketno=NO_POCKET)
         self.last_index = 0
+
+    def _empty(self) -> list[Tool]:
+        return [Tool(pocketno=index if self.random else 0) for index in range(CANON_POCKETS_MAX)]
 
     def empty_spindle(self) -> None:
         """The tool was taken out of a nonrandom spindle."""
@@ -37,7 +40,7 @@ class ToolStore:
 
         Tools that this kind of changer cannot hold are left out; the result says which and why.
         """
-        entries = [Tool() for _ in range(CANON_POCKETS_MAX)]
+        entries = self._empty()
         entries[0] = Tool(pocketno=NO_POCKET) if self.random else self.entries[0]
         taken: dict[int, int] = {}
         remarks = []
@@ -72,8 +75,8 @@ class ToolStore:
 
     @property
     def in_spindle(self) -> int:
-        """Number of the tool in the spindle; 0: none."""
-        return max(self.entries[0].toolno, 0)
+        """Number of the tool in the spindle; none is 0, on a random changer, where 0 is a tool, -1."""
+        return self.entries[0].toolno if self.random else max(self.entries[0].toolno, 0)
 
     def index_of(self, toolno: int) -> int:
         """Index of a tool; -1: not in the table. The empty spindle of a nonrandom changer is index 0."""

@@ -34,6 +34,8 @@ class StatusWriter:
         self._last = 0.0
         self._written = bytearray(EMC_STAT.SIZE)
         self._modes: Modes | None = None
+        self._mode_on: int = TrajMode.FREE
+        """Motion's mode when the machine was on last."""
         self._offsets: dict[str, object] = {}
         self._texts: dict[str, str] = {}
         stat = self.message
@@ -50,8 +52,11 @@ class StatusWriter:
     def write(self, task: Task) -> None:
         """Fill the message; write it when something changed, and as a sign of life."""
         self._motion.fill(task.motion.image)
-        if not task.motion.enabled:
-            self.message.motion.traj.mode = self._mode_when_on(task)
+        traj = self.message.motion.traj
+        if task.motion.enabled:
+            self._mode_on = traj.mode
+        else:
+            traj.mode = self._mode_when_on(task)
         self._fill_task(task)
         stat = self.message
         io = task.io.status
@@ -64,11 +69,12 @@ class StatusWriter:
             self._written[:] = image(stat)
             self._last = now
 
-    @staticmethod
-    def _mode_when_on(task: Task) -> TrajMode:
+    def _mode_when_on(self, task: Task) -> int:
         """How motion will move once the machine is on."""
         if task.mode is not Mode.MANUAL:
             return TrajMode.COORD
+        if self._mode_on != TrajMode.COORD:
+            return self._mode_on
         return TrajMode.TELEOP if task.motion.all_homed else TrajMode.FREE
 
     # --- Task

@@ -133,7 +133,14 @@ class WorldModel(MoveCanon):
 
     def get_external_tool_slot(self) -> int:
         number = self.io.status.tool.toolInSpindle
-        return max(self.get_external_tool_index(number), 0) if number > 0 else 0
+        if number < 0:
+            return self._first_empty_pocket()
+        return max(self.get_external_tool_index(number), 0) if number else 0
+
+    def _first_empty_pocket(self) -> int:
+        """Where a random changer's interpreter takes the tool to be from when there is none in the spindle."""
+        table = self.io.table
+        return next((index for index in range(1, table.last_index + 1) if table.tools[index].toolno < 0), 0)
 
     def get_external_selected_tool_slot(self) -> int:
         return self.io.status.tool.pocketPrepped
@@ -166,7 +173,7 @@ class WorldModel(MoveCanon):
         return self.io.table.last_index + 1
 
     def get_external_tc_fault(self) -> int:
-        return int(self.io.failed)
+        return self.io.status.fault
 
     def get_external_tc_reason(self) -> int:
         return self.io.status.reason

@@ -197,7 +197,7 @@ KEYS: tuple[Key, ...] = (
     ),
     *_keys(
         "EMCIO",
-        ("EMCIO", TEXT, LAUNCHER, "the I/O program", {"default": "io"}),
+        ("EMCIO", TEXT, LAUNCHER, "the I/O program: io, or iov2 -support-start-change", {"default": "io"}),
         ("CYCLE_TIME", REAL, IO, "period of io", {"default": "0.1", "unit": "s", "maximum": 10.0}),
         ("TOOL_TABLE", FILE, IO, "the tool table", {}),
         ("DB_PROGRAM", TEXT, IO, "program that keeps the tools, in place of a table", {}),

@@ -24,6 +24,8 @@ MODULES = {
     "linuxcncsvr": "nml.net.server",
     "web": "gui.web",
 }
+# Options of those names that share a program with another
+VARIANTS = {"iov2": ("-v2",)}
 # Programs of ours that run beside the machine where the INI file has their section
 SERVICES = {"MQTT": "gui.shop.mqtt", "OPCUA": "gui.shop.opcua"}
 
@@ -59,7 +61,7 @@ class Programs:
         words = shlex.split(self._ini.find(section, key, default))
         module = MODULES.get(words[0]) if words else None
         if module is not None and importlib.util.find_spec(module) is not None:
-            return self.ours(words[0], module, *words[1:])
+            return self.ours(words[0], module, *VARIANTS.get(words[0], ()), *words[1:])
         executable = words and self._executable(words[0])
         if executable:
             return Command(executable, ["-ini", str(self._path), *words[1:]])

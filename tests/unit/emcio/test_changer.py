@@ -97,7 +97,7 @@ def test_an_abort_takes_the_request_back_and_leaves_the_spindle_as_it_was(change
     pins["tool-prepared"] = True
     changer.poll()
     changer.load()
-    changer.abort()
+    changer.abort(0)
     pins["tool-changed"] = True
     changer.poll()
     assert (pins["tool-change"], changer.in_spindle, changer.busy) == (False, 1, False)

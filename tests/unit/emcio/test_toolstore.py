@@ -106,7 +106,7 @@ def test_a_random_spindle_is_what_the_table_says_also_after_reading_it_anew():
     store = ToolStore(random=True)
     store.load([Tool(toolno=4, pocketno=0), *TOOLS])
     store.load(TOOLS)
-    assert (store.in_spindle, store.entries[0].toolno) == (0, -1)
+    assert (store.in_spindle, store.entries[0].toolno) == (-1, -1)
 
 
 def test_nobody_knows_of_a_tool_in_a_nonrandom_spindle_at_start():
