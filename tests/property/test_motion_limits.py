@@ -111,6 +111,11 @@ def _pin(m: Motion, rng: random.Random) -> None:
     m[f"motion.{name}"] = rng.random() < (0.9 if name == "enable" else 0.3)
 
 
+def _adaptive(m: Motion, rng: random.Random) -> None:
+    m.send(C.AF_ENABLE, mode=rng.randrange(2))
+    m["motion.adaptive-feed"] = rng.choice([-1.0, -0.2, 0.0, 0.5, 1.0, 1.0])
+
+
 def _stop_jog(m: Motion, rng: random.Random) -> None:
     index = rng.randrange(3)
     m.send(C.JOG_ABORT, joint=index, axis=index, mode=rng.randrange(2))
@@ -118,7 +123,7 @@ def _stop_jog(m: Motion, rng: random.Random) -> None:
 
 ACTIONS = [
     *(_line, _lines, _arc, _probe, _jog, _jog, _wheel, _mode, _mode, _switch),
-    *(_override, _program, _home, _pin, _stop_jog, _eoffset, _spindle),
+    *(_override, _program, _home, _pin, _stop_jog, _eoffset, _spindle, _adaptive),
 ]
 
 
@@ -156,3 +161,51 @@ def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates
         m.errors()
         assert m.worst_vel <= 1.0 + ROUNDING, (seed, action)
         assert m.worst_acc <= 1.0 + ROUNDING, (seed, action)
+
+
+def _stop(m: Motion, rng: random.Random) -> bool:
+    """Stop the machine in one of many ways; whether its spindles stop too."""
+    way = rng.choice(["abort", "disable", "motion.enable", "joint.1.amp-fault-in", "spindle.0.amp-fault-in"])
+    if way == "abort":
+        m.send(C.ABORT)
+        return False
+    if way == "disable":
+        m.send(C.DISABLE)
+        return True
+    m[way] = int(way != "motion.enable")
+    m.step(2)
+    m[way] = int(way == "motion.enable")
+    return True
+
+
+def _release(m: Motion, rng: random.Random) -> None:
+    """Turn pins that motion may have waited for, in any order."""
+    names = ["feed-hold", "feed-inhibit", "jog-stop", "jog-inhibit", "probe-input", "adaptive-feed", "at-speed"]
+    name = rng.choice(names)
+    place = "spindle.0" if name == "at-speed" else "motion"
+    m[f"{place}.{name}"] = rng.choice([-1.0, 0.0, 1.0]) if name == "adaptive-feed" else rng.randrange(2)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_what_an_abort_or_a_fault_has_stopped_stands_until_a_new_command(seed: int) -> None:
+    rng = random.Random(f"stop {seed}")
+    m = _random_machine("xyz", rng)
+    for _ in range(30):
+        rng.choice(ACTIONS)(m, rng)
+        if rng.random() < 0.5:
+            m.send(C.ENABLE)
+        m.step(rng.choice([1, 5, 50, 300]))
+    m["axis.z.eoffset-enable"] = 0
+    for place in (*(f"joint.{n}" for n in range(3)), *(f"axis.{a}" for a in "xyz")):
+        m[f"{place}.jog-enable"] = 0
+    m.step(2000)
+    spindles_stop = _stop(m, rng)
+    m.run_until_rest()
+    where = [m[f"joint.{n}.motor-pos-cmd"] for n in range(3)]
+    speed = m["spindle.0.speed-out"]
+    assert speed == 0.0 or not spindles_stop
+    for _ in range(40):
+        _release(m, rng)
+        m.step(rng.choice([1, 20, 100]))
+        assert [m[f"joint.{n}.motor-pos-cmd"] for n in range(3)] == where
+        assert m["spindle.0.speed-out"] == speed

@@ -237,3 +237,16 @@ def test_an_inactive_joint_is_left_alone_by_faults_and_enable() -> None:
     m.step(3)
     assert state(m) == FREE
     assert not m["joint.2.amp-enable-out"]
+
+
+def test_the_number_of_joints_is_given_at_load_and_may_be_lowered_while_off() -> None:
+    m = Motion("xy", num_joints=4)
+    assert m.status.num_joints == 4
+    assert m.send(C.SET_NUM_JOINTS, joint=1) != 0, "the kinematics need two"
+    assert m.send(C.SET_NUM_JOINTS, joint=5) != 0, "motmod has four"
+    assert len(m.errors()) == 2
+    assert m.send(C.SET_NUM_JOINTS, joint=3) == 0
+    m.step()
+    assert m.status.num_joints == 3
+    assert m.send(C.SET_JOINT_VEL_LIMIT, joint=3, vel=1.0) != 0
+    assert m.errors() == ["SET_JOINT_VEL_LIMIT refused: there is no such joint"]
