@@ -1,4 +1,4 @@
-"""A real browser on a real machine: Debian's chromium, driven by Playwright, looks at the web display of a simulated mill.
+"""A real browser on a real machine: Debian's chromium looks at the web display of a simulated mill.
 
 Every test leaves a picture of its last moment in ``artefacts/browser``, for people to look at.
 """

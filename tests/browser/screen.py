@@ -31,6 +31,7 @@ class Screen:
         panel: str = "manual",
         wait: bool = True,
         preferences: dict[str, str] | None = None,
+        files: dict[str, str] | None = None,
     ) -> None:
         self.problems: list[str] = []
         width, height = size
@@ -42,6 +43,8 @@ class Screen:
         remembered = {"language": f'"{lang}"', "theme": f'"{theme}"', "panel": f'"{panel}"', **(preferences or {})}
         for name, value in remembered.items():
             self.context.add_init_script(f"localStorage['pyemc.{name}'] ??= {value!r}")
+        for pattern, text in (files or {}).items():
+            self.page.route(pattern, lambda route, body=text: route.fulfill(body=body, content_type="text/javascript"))
         self._cut = False
         self.page.route_web_socket("**/ws", self._wire)
         self.page.goto(f"http://127.0.0.1:{port}/" + (f"#token={token}" if token else ""))

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.browser.screen import PHONE, TABLET
-from tests.support.machine import wait_until
+from tests.support.machine import ROOT, wait_until
 from tests.support.webclient import WebClient, web_mill
 
 PANELS = ["manual", "program", "mdi", "path", "offsets", "tools", "messages", "hal", "scope", "system"]
@@ -20,7 +20,7 @@ SMALLEST_TARGET = 44  # CSS pixels
 SMALL_TARGETS = """
 () => [...document.querySelectorAll("button, select, input:not([type=checkbox]):not([type=file]), [role=tab], summary")]
   .filter((element) => element.checkVisibility() && !element.closest("[hidden]"))
-  .map((element) => [element.id || element.textContent.trim() || element.getAttribute("aria-label"), element.getBoundingClientRect()])
+  .map((element) => [element.id || element.textContent.trim(), element.getBoundingClientRect()])
   .filter(([, box]) => box.width > 0 && (box.height < SIZE || box.width < SIZE))
   .map(([name, box]) => `${name}: ${box.width} x ${box.height}`)
 """.replace("SIZE", str(SMALLEST_TARGET - 0.5))
@@ -241,3 +241,14 @@ def test_a_lathe_shows_diameters_and_its_own_jog_pad(tmp_path: Path, open_screen
         assert z_minus is not None
         assert z_plus is not None
         assert z_minus["y"] == z_plus["y"], "Z lies"
+
+
+def test_the_panel_of_the_guide_appears_in_the_rail(mill: int, open_screen: Any) -> None:
+    guide = (ROOT / "docs" / "web-panel.md").read_text()
+    module = guide.partition("```js\n")[2].partition("```")[0]
+    index = (ROOT / "gui" / "web" / "page" / "panels" / "index.js").read_text()
+    added = {"parts.js": module, "index.js": index + 'import "./parts.js";\n'}
+    screen = open_screen(mill, files={f"**/page/panels/{name}": text for name, text in added.items()})
+    screen.go("parts")
+    screen.page.wait_for_selector("#panel-parts output:text-is('0')")
+    assert not axe(screen)

@@ -71,7 +71,7 @@ function build(config) {
 /** Cover the page while its numbers are old. @param {any} v */
 function showConnection(v) {
   const cover = /** @type {HTMLElement} */ (document.getElementById("offline"));
-  const lost = v.link === false || (v.link && v.machine !== undefined && v.machine !== "ok");
+  const lost = v.link === false || (v.link && v.machine !== undefined && v.machine !== "ok" && !v.config?.wizard);
   setFlag(cover, "hidden", !lost);
   if (!lost) return;
   if (v.link === false && v.closed === 4401) return askToken(cover);

@@ -38,7 +38,9 @@ def test_markup_has_no_inline_scripts_styles_or_handlers() -> None:
 
 def test_modules_never_turn_text_into_markup_or_code() -> None:
     for path in own("*.js"):
-        assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function", path.read_text()), path
+        assert not re.search(
+            r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function", path.read_text()
+        ), path
 
 
 def test_nothing_is_loaded_from_elsewhere() -> None:

@@ -28,7 +28,9 @@ def texts(path: Path) -> list[str]:
     for match in CALL.finditer(path.read_text()):
         if path.name == "i18n.js":
             continue  # defines it
-        assert match[1], f"{path.name}: _() around something that is not a literal: {match.string[match.start():][:60]}"
+        assert match[1], (
+            f"{path.name}: _() around something that is not a literal: {match.string[match.start() :][:60]}"
+        )
         found.append(re.sub(r"\\(.)", r"\1", match[1][1:-1]))
     return found
 
@@ -56,7 +58,9 @@ def test_the_page_speaks_german_besides_english() -> None:
 @pytest.mark.parametrize("path", catalogues(), ids=lambda path: path.stem)
 def test_a_catalogue_has_every_text_of_the_page(path: Path) -> None:
     catalogue = {entry.msgid: entry.msgstr for entry in polib.pofile(str(path))}
-    assert not sorted((page_texts() | server_texts()) - {text for text, translation in catalogue.items() if translation})
+    assert not sorted(
+        (page_texts() | server_texts()) - {text for text, translation in catalogue.items() if translation}
+    )
 
 
 @pytest.mark.parametrize("path", catalogues(), ids=lambda path: path.stem)

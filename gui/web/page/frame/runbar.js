@@ -56,17 +56,17 @@ function runState(app) {
   const time = h("span", { class: "mono muted" });
   const bar = h("progress", { max: 1, value: 0, "aria-label": _("Progress of the program") });
   const message = h("span", { class: "muted" });
-  app.store.watch(["program", "motion_line", "current_line", "interp_state", "task_mode", "forecast", "elapsed", "preview", "delay_left"], (v) => {
+  app.store.watch(["program", "motion_line", "current_line", "interp_state", "task_mode", "forecast", "elapsed", "opening", "delay_left"], (v) => {
     const line = v.motion_line || v.current_line || 0;
     const total = v.program?.lines ?? 0;
-    const forecast = v.forecast?.seconds;
+    const forecast = v.forecast?.state === "whole" ? v.forecast.seconds : 0;
     setText(name, v.program ? _("{name} · line {line} of {total}", { name: v.program.name, line: running(v) ? line : 0, total }) : _("No program"));
     const rest = running(v) && forecast && v.elapsed !== undefined ? `−${duration(forecast - v.elapsed)}` : forecast ? duration(forecast) : "";
     setText(time, rest);
     const share = running(v) ? (forecast && v.elapsed !== undefined ? v.elapsed / forecast : line / Math.max(total, 1)) : 0;
     bar.value = share;
     setFlag(bar, "hidden", !v.program);
-    setText(message, v.delay_left > 0 ? _("Dwell {seconds} s", { seconds: v.delay_left.toFixed(1) }) : "");
+    setText(message, v.opening ? _("{name} is being converted: {percent} %", { name: v.opening.name, percent: Math.round(v.opening.percent) }) : v.delay_left > 0 ? _("Dwell {seconds} s", { seconds: v.delay_left.toFixed(1) }) : "");
   });
   return h("div", { id: "run-state" }, h("div", { class: "line" }, name, message, time), bar);
 }
