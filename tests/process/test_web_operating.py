@@ -1,5 +1,6 @@
 """A whole machine operated through the web display's WebSocket, as its page does it."""
 
+import numpy as np
 import pytest
 
 import linuxcnc
@@ -214,3 +215,16 @@ def test_post_gui_hal_files_find_the_displays_pins(tmp_path):
         assert page.hello["config"]["cycle_time"] == 0.05
         assert page.call("hal.tree", filter="web.door")["items"][0]["signal"] == "door-open"
         assert "web.nothing" in page.hello["messages"][0]["text"]
+
+
+def test_the_forecast_of_the_loaded_program_tells_when_each_line_is_done(client):
+    client.ready()
+    client.call("path.subscribe")
+    client.call("program.open", path="square.ngc")
+    client.wait(lambda _: any(frame["t"] == "forecast" for frame in client.frames), "forecast")
+    frame = next(frame for frame in client.frames if frame["t"] == "forecast")
+    lines, times = np.frombuffer(frame["lines"], "<u4"), np.frombuffer(frame["times"], "<f4")
+    assert {3, 4, 5, 6} <= {*lines.tolist()}
+    assert (np.diff(times) >= 0).all()
+    assert frame["seconds"] == pytest.approx(times[-1], abs=0.01)
+    client.wait(lambda state: state["forecast"]["state"] == "whole", "published")

@@ -21,13 +21,6 @@ async def open_program(caller: Caller, path: str) -> None:
     await caller.server.programs.open(file)
 
 
-@method("program.close", Right.CONTROLS)
-async def close_program(caller: Caller) -> None:
-    _idle(caller)
-    await caller.server.machine.mode(linuxcnc.MODE_MANUAL)
-    await caller.server.machine.order("reset_interpreter")
-
-
 @method("program.lines", Right.ANYBODY)
 async def lines(caller: Caller, first: int, count: int, version: str | None = None) -> dict[str, Any]:
     text = caller.server.programs.text
