@@ -27,6 +27,7 @@ from rs274ngc.offsets cimport (
     axis_offset, check_axis_offset, check_g10, select_origin, set_data, store_reference, tool_length,
 )
 from rs274ngc.path cimport polar_to_xy
+from rs274ngc.remapping cimport take_over
 from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_point, quadratic_spline
 from rs274ngc.state cimport State, fail, fail_word
 from rs274ngc.threads cimport check_g76, check_threading, rigid_tap, spindle_feed, threading_cycle
@@ -222,7 +223,7 @@ cdef int enhance(State s, Block* b) except -1:
         else:
             if taken_by_0:
                 return fail(s, "Cannot use two g codes that both use axis values", b.g_at[1])
-            if not axes and g_code[b.g[1]].flags & AXES_NEEDED:
+            if not axes and g_code[b.g[1]].flags & AXES_NEEDED and f"G{b.g[1]}" not in s.remaps:
                 return fail(s, "All axes missing with motion code", b.g_at[1])
         b.motion = b.g[1]
     elif taken:
@@ -242,10 +243,23 @@ cdef int enhance(State s, Block* b) except -1:
     return 0
 
 
+cdef bint any_remapped(State s, const Block* b):
+    """Whether a G or M code of the line is remapped."""
+    cdef int group
+    if b.motion >= 0 and f"G{b.motion}" in s.remaps:
+        return True
+    for group in range(M_GROUPS):
+        if b.m[group] >= 0 and f"M{b.m[group]}" in s.remaps:
+            return True
+    return False
+
+
 cdef int check(State s, Block* b) except -1:
     """Everything that must hold before the first thing of a line is done."""
     cdef int group, code
     cdef unsigned int allowed = 0
+    if s.remaps and any_remapped(s, b):
+        return 0        # the words of the line are for the procedure, which does its own checks
     if b.g[0] >= 0 and g_code[b.g[0]].check != NULL:
         g_code[b.g[0]].check(s, b, b.g[0])
     if b.m_count > 4:
@@ -288,6 +302,8 @@ cdef int run(State s, Block* b) except -1:
         while not steps & 1:
             steps >>= 1
             step += 1
+        if s.remaps and take_over(s, b, step):
+            return 0
         if step == STEP_MOTION:
             if g_code[b.motion].run != canned_cycle:
                 s.in_cycles = False

@@ -12,6 +12,7 @@ from libc.math cimport fabs, floor
 from nml.errors import InterpError
 from rs274ngc.block cimport LINE_SIZE
 from rs274ngc.scan cimport read_integer, read_name, read_value, skip_comments, strip
+from rs274ngc.remapping import begin_python_sub
 from rs274ngc.source cimport Source
 from rs274ngc.state cimport FEATURE_OWORD_N_ARGS, LOCALS, Frame, State, fail
 
@@ -202,7 +203,10 @@ cdef class Flow:
             if len(arguments) > ARGUMENTS_MAX:
                 fail(s, "Too many subroutine parameters", i)
         self.end_of_line(i)
-        self.enter(label, arguments)
+        if s.plugin is not None and s.plugin.has("oword", label):
+            begin_python_sub(s, label, arguments)
+        else:
+            self.enter(label, arguments)
 
     def do_while(self, str label, int at):
         cdef Label known = self.s.frame.labels.get(label)
@@ -404,7 +408,11 @@ cdef class Flow:
             read_value(s, &i, &value)
             returned = True
         self.end_of_line(i)
-        self.pop()
+        if s.frame.remap is not None:       # its epilog is still to see this level
+            s.resume = s.frame.remap
+            s.frame.remap = None
+        else:
+            self.pop()
         s.return_value = value
         s.value_returned = returned
 
@@ -426,6 +434,8 @@ cdef class Flow:
 
     def unwind(self):
         """After an error or an abort: back to the line after the outermost call."""
+        self.s.resume = None
+        self.s.remap_stack.clear()
         while len(self.s.frames) > 1:
             self.s.frame.restore = False
             self.pop()

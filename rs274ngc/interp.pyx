@@ -19,6 +19,8 @@ from rs274ngc.context cimport restore
 from rs274ngc.flow cimport Flow
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
+from rs274ngc.plugin import plugin_of
+from rs274ngc.remapping import go_on
 from rs274ngc.scan cimport read_unsigned, scan_words, strip
 from rs274ngc.settings import apply_settings
 from rs274ngc.source cimport Source
@@ -54,6 +56,7 @@ cdef class Interpreter:
         if ini is not None:
             apply_settings(self, ini)
             self.flow.search_path = self.folders()
+            self.state.plugin = plugin_of(self, ini)
 
     # --- Beginning and end
 
@@ -273,6 +276,10 @@ cdef class Interpreter:
 
     cdef int read_line(self) except -1:
         cdef State s = self.state
+        if s.resume is not None:        # a remapped code waited for the machine: its steps go on instead of a line
+            if s.waiting:
+                self.take_results()
+            return OK
         if self.flow.source is None:
             if len(s.frames) == 1:
                 return ENDFILE
@@ -356,6 +363,24 @@ cdef class Interpreter:
             fail(self.state, "DISABLE_FANUC_STYLE_SUB set in INI file, but found m99")
         self.flow.end_subprogram()
 
+    def execute_inner(self, text):
+        """Run a line, and the subroutine that it calls, in the middle of another: for Python remaps."""
+        cdef State s = self.state
+        cdef Block block = s.block
+        cdef int level = len(s.frames), line = s.line
+        cdef bytes raw = s.raw[:s.raw_size]
+        self.take_text(text)
+        self.understand()
+        self.run_block()
+        while len(s.frames) > level:
+            if self.read_line() == ENDFILE:
+                fail(s, "File ended with no percent sign or program end")
+            self.run_block()
+        s.must_finish = False
+        s.block = block
+        memcpy(s.raw, <const char*>raw, len(raw) + 1)
+        s.raw_size, s.line = <int>len(raw), line
+
     def read_subroutine(self, str label, take):
         """Call a subroutine whose lines are not executed: ``take()`` looks at each in ``state.block``, for the lathe cycles."""
         cdef State s = self.state
@@ -384,11 +409,21 @@ cdef class Interpreter:
 
     cdef int run_block(self) except -1:
         cdef State s = self.state
-        if s.block.steps == 0:
-            return OK
-        if s.block.steps != 1ULL << 26:     # anything besides a plain move may have changed a mode
-            s.modal_version += 1
-        run(s, &s.block)
+        cdef int what
+        while True:
+            if s.resume is not None:
+                s.modal_version += 1
+                what = go_on(s)
+                if what == FINISH:
+                    return FINISH
+            if s.block.steps == 0:
+                break
+            if s.block.steps != 1ULL << 26:     # anything besides a plain move may have changed a mode
+                s.modal_version += 1
+            s.last_setting, s.last_change = s.block.g[0], s.block.m[6]
+            run(s, &s.block)
+            if s.resume is None:
+                break
         s.block.steps = 0
         if s.ended:
             s.ended = False
@@ -498,8 +533,8 @@ cdef class Interpreter:
 
     @property
     def call_level(self):
-        """Depth of subroutine calls."""
-        return len(self.state.frames) - 1
+        """Depth of subroutine calls; a remapped code that waits for the machine counts as one."""
+        return len(self.state.frames) - 1 + (self.state.resume is not None)
 
     @property
     def modal_version(self):
@@ -553,7 +588,7 @@ cdef tuple active_g_codes(State s):
     return (
         s.line,
         s.motion,
-        -1,
+        s.last_setting,
         {1: 170, 2: 190, 3: 180, 4: 171, 5: 191, 6: 181}[s.plane],
         {1: 420, 2: 410, 3: 400}[s.comp_side],
         200 if s.units == CANON_UNITS_INCHES else 210,
@@ -578,6 +613,6 @@ cdef tuple active_m_codes(State s):
     else:
         override = 51 if s.speed_override[0] else 49
     return (
-        s.line, -1, spindle, -1, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
+        s.line, -1, spindle, s.last_change, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
         override, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, 0,
     )

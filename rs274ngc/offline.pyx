@@ -139,7 +139,7 @@ cdef class OfflineCanon(Canon):
 
     cpdef void change_tool_number(self, int pocket) except *:
         self.slot = pocket
-        self.tools[0] = self.tools[pocket] if pocket else Tool()
+        self.tools[0] = self.tools[pocket] if pocket else Tool(0, -1)
 
     cpdef void set_tool_table_entry(self, int pocket, int tool, double x, double y, double z, double a, double b, double c, double u, double v, double w, double diameter, double frontangle, double backangle, int orientation) except *:
         offset = (x, y, z, a, b, c, u, v, w)

@@ -356,7 +356,12 @@ cdef int shift_to_here(State s, Block* b, int l, const double* point, list offse
 
 cdef int write_tool(State s, int index, int number, list offset, double diameter, double front, double back, int orientation) except -1:
     x, y, z, a, b, c, u, v, w = offset
+    cdef int k
     s.canon.set_tool_table_entry(index, number, x, y, z, a, b, c, u, v, w, diameter, front, back, orientation)
+    if number == s.current_tool and number > 0:
+        for k in range(9):
+            s.params[5401 + k] = offset[k]
+        s.params[5410], s.params[5411], s.params[5412], s.params[5413] = diameter, front, back, orientation
     return 0
 
 

@@ -55,6 +55,8 @@ cdef double get_named(State s, str name, int at) except? -1.0e300:
     value = s.globals.get(name) if name.startswith("_") else s.frame.named.get(name)
     if value is not None:
         return value
+    if s.plugin is not None and name in s.plugin.named:
+        return s.plugin.parameter(name)
     known = PREDEFINED.get(name)
     if known is not None:
         return known(s)
@@ -81,7 +83,7 @@ cdef int set_named(State s, str name, double value, int at) except -1:
 
 
 cdef bint named_exists(State s, str name) except -1:
-    if name in PREDEFINED:
+    if name in PREDEFINED or (s.plugin is not None and name in s.plugin.named):
         return True
     if name.startswith("_"):
         if name in s.globals:

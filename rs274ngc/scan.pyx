@@ -10,7 +10,7 @@ from libc.stdlib cimport strtod
 from libc.string cimport memcpy, memset
 
 from rs274ngc.block cimport *
-from rs274ngc.modal cimport g_code, g_group, m_code, m_group, word_step
+from rs274ngc.modal cimport g_code, g_group, m_code, m_group, m_steps, word_step
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named, set_numbered
 from rs274ngc.state cimport State, fail
 
@@ -547,13 +547,15 @@ cdef int read_g(State s, Block* b, int* at, int start) except -1:
     if code < 0:
         return fail(s, "Negative g code used", start)
     group = g_group[code]
+    if s.remaps and f"G{code}" in s.remaps:
+        group = 1
     if group < 0:
         return fail(s, "Unknown g code used", start)
     if b.g[group] >= 0:
         return fail(s, "Two g codes used from same modal group", start)
     b.g[group] = code
     b.g_at[group] = start
-    b.steps |= g_code[code].step
+    b.steps |= g_code[code].step if group != 1 else 0
     return 0
 
 
@@ -562,17 +564,22 @@ cdef int read_m(State s, Block* b, int* at, int start) except -1:
     read_integer(s, at, &code)
     if code < 0:
         return fail(s, "Negative m code used", start)
-    if code > 199:
+    remap = s.remaps.get(f"M{code}") if s.remaps else None
+    if remap is not None:
+        group = remap.group
+        b.steps |= m_steps[group]
+    elif code > 199:
         return fail(s, f"M-code greater than 199: M{code}", start)
-    group = m_group[code]
-    if group < 0 or (code >= 100 and not s.canon.user_command_exists(code)):
-        return fail(s, f"Unknown m code used: M{code}", start)
+    else:
+        group = m_group[code]
+        if group < 0 or (code >= 100 and not s.canon.user_command_exists(code)):
+            return fail(s, f"Unknown m code used: M{code}", start)
+        b.steps |= m_code[code].step
     if b.m[group] >= 0:
         return fail(s, "Two m codes used from same modal group", start)
     b.m[group] = code
     b.m_at[group] = start
     b.m_count += 1
-    b.steps |= m_code[code].step
     return 0
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from nml.errors import ConfigError
 from rs274ngc.canon import AXES
+from rs274ngc.remap import remaps_of
 
 INCHES_OF = {"inch", "in", "imperial"}
 TRUE = {"1", "yes", "true", "on", "y", "t"}
@@ -78,9 +79,12 @@ def apply_settings(interp: Any, ini: Any) -> None:
     ]
     prefix = ini.find("DISPLAY", "PROGRAM_PREFIX")
     state.program_prefix = expanded(base, prefix) if prefix else ""
+    state.remaps = remaps_of(ini)
     state.spindles = min(8, max(1, int(number(ini, "TRAJ", "SPINDLES", 1))))
     state.random_toolchanger = flag(ini, "EMCIO", "RANDOM_TOOLCHANGER")
     state.change_with_spindle_on = flag(ini, "EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON")
+    state.change_with_quill_up = flag(ini, "EMCIO", "TOOL_CHANGE_QUILL_UP")
+    state.change_at_g30 = flag(ini, "EMCIO", "TOOL_CHANGE_AT_G30")
     state.wrapped_rotary = sum(
         1 << (3 + k) for k, axis in enumerate("ABC") if flag(ini, f"AXIS_{axis}", "WRAPPED_ROTARY")
     )

@@ -45,6 +45,7 @@ cdef class Frame:
     cdef public int repeats         # M98 L: calls still to do
     cdef public long body           # offset of the subroutine's first line
     cdef public int body_line
+    cdef public object remap        # the Pending whose procedure this is
     cdef double locals[LOCALS + 1]
 
 
@@ -85,7 +86,7 @@ cdef class State:
     # Tools
     cdef public int selected_index, selected_tool, tool_index
     cdef public int current_tool
-    cdef public bint random_toolchanger, change_with_spindle_on
+    cdef public bint random_toolchanger, change_with_spindle_on, change_with_quill_up, change_at_g30
     cdef public int waiting          # WAIT_*
     cdef int input_index
     cdef bint input_digital
@@ -117,6 +118,11 @@ cdef class State:
     cdef int indexer[3]             # joint of a locking indexer A, B, C; -1: none
     cdef public list subroutine_path
     cdef public str program_prefix
+    # Remapped codes
+    cdef public dict remaps         # Remap by key
+    cdef public list remap_stack    # Pendings, the innermost last
+    cdef public object resume       # the Pending whose steps are to go on
+    cdef public object plugin       # the Python plug-in; None: there is none
     # The line in work
     cdef Block block
     cdef char raw[LINE_SIZE]
@@ -127,6 +133,7 @@ cdef class State:
     cdef public int line
     cdef public int error_at
     cdef public int modal_version
+    cdef public int last_setting, last_change   # G code of group 0 times 10 and M6 or M61 of the last line, -1: none
     cdef public bint percent, ended, must_finish
     cdef public bint profile        # a lathe profile is read: its A, C, U, W are no axes
     cdef object named_lookup

@@ -44,6 +44,8 @@ cdef class State:
         self.frame = Frame()
         self.frames = [self.frame]
         self.comp_queue = None
+        self.remaps = {}
+        self.remap_stack = []
         self.set_defaults()
 
     def set_defaults(self):
@@ -59,7 +61,7 @@ cdef class State:
         self.retract_old_z = False
         self.origin_index = 1
         self.feed_override = self.feed_hold = True
-        self.selected_index = -1
+        self.selected_index = self.last_setting = self.last_change = -1
         self.selected_tool = 0
         for i in range(SPINDLES):
             self.turning[i] = CANON_STOPPED
@@ -88,7 +90,7 @@ cdef class State:
 
     def pocket_of(self, int index):
         """Pocket number of a tool-table index; negative indices stand for themselves."""
-        if index <= 0 or index >= self.canon.get_external_pockets_max():
+        if index < 0 or index >= self.canon.get_external_pockets_max():
             return index
         return self.canon.get_external_tool_table(index).pocketno
 

@@ -1,10 +1,11 @@
 """Tools: the T word, M6, M61, and what the interpreter knows of the tool table (which the canon keeps)."""
 
-from libc.math cimport floor
+from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_SIDE_OFF, CANON_STOPPED
-from rs274ngc.state cimport FINISH, WAIT_TOOL, State, fail, fail_word
+from rs274ngc.path cimport machine_place, traverse
+from rs274ngc.state cimport WAIT_TOOL, State, fail, fail_word, unit_factor
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, STOPPED = CANON_STOPPED
 
@@ -45,9 +46,8 @@ cdef int select_tool(State s, Block* b) except -1:
 
 
 cdef int change_tool(State s, Block* b, int code) except -1:
-    """M6: spindles stop, the selected tool comes in"""
+    """M6: spindles stop, the quill goes up or the tool to the second reference point if the INI file says so, the tool comes"""
     cdef int spindle
-    cdef double[9] position
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot change tools with cutter radius compensation on", b.m_at[6])
     if s.selected_index < 0 and s.random_toolchanger:
@@ -57,9 +57,34 @@ cdef int change_tool(State s, Block* b, int code) except -1:
         for spindle in range(s.spindles):
             s.canon.stop_spindle_turning(spindle)
             s.turning[spindle] = STOPPED
+    if s.change_with_quill_up:
+        to_change_place(s, True)
+    if s.change_at_g30:
+        to_change_place(s, False)
     s.canon.change_tool()
     s.tool_index = max(s.selected_index, 0)
     s.waiting |= WAIT_TOOL
+    return 0
+
+
+cdef int to_change_place(State s, bint only_z) except -1:
+    """Rapid to machine Z0, or to the point of G30.1; previews do not show it."""
+    cdef double[9] end
+    cdef double factor = s.canon.get_external_length_units() * unit_factor(s)
+    cdef double height
+    cdef int k
+    for k in range(9):
+        end[k] = s.params[5181 + k] / (factor if k < 3 or k > 5 else 1.0)
+    if only_z:
+        end[2] = 0.0
+    machine_place(s, end)
+    if only_z:
+        height = end[2]
+        memcpy(end, s.pos, sizeof(end))
+        end[2] = height
+    s.canon.comment("AXIS,hide")
+    traverse(s, end)
+    s.canon.comment("AXIS,show")
     return 0
 
 

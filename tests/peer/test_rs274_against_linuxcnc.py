@@ -4,13 +4,18 @@
 """
 
 import os
+import shutil
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 
 import pytest
 
-from tests.support.differential import PEER, Outcome, ours, run, theirs
+from tests.support.differential import PEER, Outcome, calls, ours, run, theirs
 
+ROOT = Path(__file__).parents[2]
+CONFIGURATIONS = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/remap")
 SAMPLES = Path("/usr/share/linuxcnc/ncfiles")
 COUNT = int(os.environ.get("PYEMC_RS274_PROGRAMS", "60"))
 SEED = int(os.environ.get("PYEMC_RS274_SEED", "1"))
@@ -25,6 +30,13 @@ CORPUS = (
     "retval", "lathe_g7x_quadrants", "lathe_g7x_face_boring",
 )  # fmt: skip
 
+
+STOCK_REMAPS = (
+    ("getting-started/demo.ini", "examples.ngc"),
+    ("manual-toolchange-with-tool-length-switch/manualtoolchange.ini", "tcdemo.ngc"),
+    ("rack-toolchange/racktoolchange.ini", "tcdemo.ngc"),
+)
+"""Configurations whose codes are NGC procedures and Python functions, and their programs."""
 
 AWKWARD = {
     "rotating the active system while G92 is in force": """\
@@ -127,6 +139,32 @@ def test_a_sample_program_gives_the_same_calls(name: str, tmp_path: Path) -> Non
     program.write_bytes((SAMPLES / f"{name}.ngc").read_bytes())
     their, our = both(program)
     assert our == their
+
+
+@pytest.mark.parametrize(("configuration", "program"), STOCK_REMAPS)
+def test_a_stock_configuration_with_remaps_gives_the_same_calls(
+    configuration: str, program: str, tmp_path: Path
+) -> None:
+    shutil.copytree(CONFIGURATIONS, tmp_path / "remap")
+    (tmp_path / "nc_files").mkdir()
+    (tmp_path / "nc_files" / "remap_lib").symlink_to(SAMPLES / "remap_lib")
+    folder = tmp_path / "remap" / Path(configuration).parent
+    outputs = []
+    for command in ([str(PEER)], [sys.executable, "-m", "rs274ngc"]):
+        for name in ("sim.var", "sim_mm.var"):
+            (folder / name).write_text("")
+        done = subprocess.run(
+            [*command, "-i", Path(configuration).name, "-t", "tool.tbl", "-g", f"nc_files/{program}"],
+            env=dict(os.environ, PYTHONPATH=str(ROOT), HOME=str(folder)),
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        outputs.append(calls(done.stdout))
+    assert len(outputs[0]) > 50
+    assert outputs[1] == outputs[0]
 
 
 @pytest.mark.parametrize("seed", range(SEED, SEED + COUNT))

@@ -1,0 +1,209 @@
+"""``self`` of the functions of Python remaps: LinuxCNC's names for what the interpreter knows.
+
+A name is one row of ``READ`` (what it is) and, where functions may set it, of ``WRITE``. Lengths are in program units.
+"""
+
+from nml.errors import InterpError
+from rs274ngc.canon import AXES
+from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named
+from rs274ngc.plugin_interpreter import INTERP_ERROR, INTERP_OK, InterpreterException
+from rs274ngc.remapping import view
+from rs274ngc.state cimport PARAMETERS, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, State
+from rs274ngc.tools cimport find_tool, refresh_tool_parameters
+
+
+class Parameters:
+    """``self.params``: by number, or by name; called, it lists the names."""
+
+    def __init__(self, State s):
+        self._state = s
+
+    def __getitem__(self, key):
+        cdef State s = self._state
+        cdef double value
+        if isinstance(key, str):
+            if not named_exists(s, key.lower()):
+                raise IndexError(f"no parameter #<{key}>")
+            return get_named(s, key.lower(), -1)
+        get_numbered(s, key, &value, -1)
+        return value
+
+    def __setitem__(self, key, double value):
+        cdef State s = self._state
+        if isinstance(key, str):
+            set_named(s, key.lower(), value, -1)
+        elif 0 < key < PARAMETERS:
+            s.params[<int>key] = value
+        else:
+            raise IndexError(f"no parameter #{key}")
+
+    def __call__(self):
+        cdef State s = self._state
+        return sorted({*s.globals, *s.frame.named})
+
+
+class Levels:
+    """``self.blocks``: the lines whose remapped codes are under way, by remap level."""
+
+    def __init__(self, State s):
+        self._state = s
+
+    def __getitem__(self, level):
+        return view(self._state, level)
+
+
+class Spindles:
+    """``self.speed``: by spindle."""
+
+    def __init__(self, State s):
+        self._state = s
+
+    def __getitem__(self, int n):
+        cdef State s = self._state
+        return s.speed[n]
+
+    def __setitem__(self, int n, double value):
+        cdef State s = self._state
+        s.speed[n] = value
+
+
+def axis_value(name, State s):
+    """A name of one axis: current_x, AA_current, u_current, axis_offset_z, origin_offset_x, tool offsets; None: no such name."""
+    for prefix, which in (("current_", 0), ("axis_offset_", 1), ("origin_offset_", 2), ("tool_offset_", 3)):
+        if name.startswith(prefix) and len(name) == len(prefix) + 1:
+            axis = AXES.find(name[len(prefix)].upper())
+            if axis >= 0:
+                return (s.pos[<int>axis], s.g92[<int>axis], s.origin[<int>axis], s.tool[<int>axis])[which]
+    if name.endswith("_current") and name[0].upper() in AXES:
+        return s.pos[<int>AXES.index(name[0].upper())]
+    return None
+
+
+READ = {
+    "remap_level": lambda s: len(s.remap_stack),
+    "call_level": lambda s: len(s.frames) - 1,
+    "return_value": lambda s: s.return_value,
+    "value_returned": lambda s: int(s.value_returned),
+    "feed_rate": lambda s: s.feed,
+    "feed_mode": lambda s: s.feed_mode // 10,
+    "motion_mode": lambda s: s.motion,
+    "plane": lambda s: s.plane,
+    "length_units": lambda s: s.units,
+    "distance_mode": lambda s: int(s.incremental),
+    "ijk_distance_mode": lambda s: int(not s.ijk_absolute),
+    "retract_mode": lambda s: int(s.retract_old_z),
+    "control_mode": lambda s: s.control_mode,
+    "origin_index": lambda s: s.origin_index,
+    "cutter_comp_side": lambda s: {1: 1, 2: 2, 3: 0}[s.comp_side],
+    "cutter_comp_radius": lambda s: s.comp_radius,
+    "current_tool": lambda s: s.current_tool,
+    "current_pocket": lambda s: s.tool_index,
+    "selected_tool": lambda s: s.selected_tool,
+    "selected_pocket": lambda s: s.selected_index,
+    "mist": lambda s: int(s.mist),
+    "flood": lambda s: int(s.flood),
+    "feed_override": lambda s: int(s.feed_override),
+    "adaptive_feed": lambda s: int(s.adaptive_feed),
+    "feed_hold": lambda s: int(s.feed_hold),
+    "num_spindles": lambda s: s.spindles,
+    "sequence_number": lambda s: s.line,
+    "filename": lambda s: s.interp.file,
+    "linetext": lambda s: s.interp.block_text,
+    "blocktext": lambda s: s.interp.block_text,
+    "feature_set": lambda s: s.features,
+    "debugmask": lambda s: 0,
+    "loggingLevel": lambda s: 0,
+    "task": lambda s: int(s.canon.is_task),
+    "active_g_codes": lambda s: s.interp.active_g_codes(),
+    "active_m_codes": lambda s: s.interp.active_m_codes(),
+    "active_settings": lambda s: s.interp.active_settings(),
+    "stack_index": lambda s: 0,
+    "input_flag": lambda s: int(bool(s.waiting & WAIT_INPUT)),
+    "probe_flag": lambda s: int(bool(s.waiting & WAIT_PROBE)),
+    "toolchange_flag": lambda s: int(bool(s.waiting & WAIT_TOOL)),
+}
+"""What can be read."""
+
+WRITE = {
+    "feed_rate": "feed", "motion_mode": "motion", "selected_tool": "selected_tool", "selected_pocket": "selected_index",
+    "current_tool": "current_tool", "current_pocket": "tool_index", "return_value": "return_value", "mist": "mist",
+    "flood": "flood",
+}
+"""What can be set, and where it is kept."""
+
+FLAGS = {
+    "toolchange_flag": WAIT_TOOL, "tool_change_flag": WAIT_TOOL, "probe_flag": WAIT_PROBE, "input_flag": WAIT_INPUT,
+}
+"""Setting one of these asks for the machine to come to rest before the next line."""
+
+
+class InterpView:
+    """LinuxCNC's interpreter object."""
+
+    def __init__(self, interp):
+        cdef State s = interp.state
+        own = self.__dict__
+        own["_interp"], own["_state"] = interp, s
+        own["params"], own["blocks"], own["speed"] = Parameters(s), Levels(s), Spindles(s)
+
+    def __getattr__(self, name):
+        cdef State s = self.__dict__["_state"]
+        known = READ.get(name)
+        if known is not None:
+            return known(s)
+        value = axis_value(name, s)
+        if value is None:
+            raise AttributeError(f"the interpreter has no '{name}'")
+        return value
+
+    def __setattr__(self, name, value):
+        cdef State s = self.__dict__["_state"]
+        if name in WRITE:
+            setattr(s, WRITE[name], value)
+            s.modal_version += 1
+        elif name in FLAGS:
+            s.waiting = s.waiting | FLAGS[name] if value else s.waiting & ~FLAGS[name]
+        elif name in READ:
+            raise AttributeError(f"'{name}' of the interpreter can only be read")
+        else:
+            self.__dict__[name] = value
+
+    def execute(self, text, line_number=0):
+        """Run a line of G-code, subroutines included; InterpreterException when it is wrong."""
+        try:
+            self._interp.execute_inner(text)
+        except InterpError as error:
+            raise InterpreterException(error.message, line_number, text) from error
+        return INTERP_OK
+
+    def set_errormsg(self, text):
+        """The text of the error that INTERP_ERROR is to report."""
+        self._state.plugin.error_message = text
+
+    def find_tool_pocket(self, number):
+        """(INTERP_OK, tool-table index) of a tool number."""
+        try:
+            return INTERP_OK, find_tool(self._state, int(number), -1)
+        except InterpError:
+            return INTERP_ERROR, -1
+
+    def set_tool_parameters(self):
+        """#5400 to #5413 of the tool in the spindle."""
+        refresh_tool_parameters(self._state)
+
+    def load_tool_table(self):
+        """The tool table is the canon's; there is nothing to load."""
+        return INTERP_OK
+
+    def synch(self):
+        """Take over what the machine says."""
+        self._interp.synch()
+
+    def ini(self, section, key):
+        """A value of the INI file, None when it is not there."""
+        s = self._state
+        return s.ini.find(section, key) if s.ini is not None else None
+
+    def stack(self):
+        """Names of the subroutines under way."""
+        return [frame.sub for frame in self._state.frames[1:]]

@@ -1,0 +1,193 @@
+"""Remapped codes: what REMAP lines may say, NGC procedures, Python functions, and what they see of the interpreter."""
+
+import textwrap
+
+import pytest
+
+from nml.errors import ConfigError, InterpError
+from nml.inifile import IniFile
+from rs274ngc import tooltable
+from rs274ngc.interp import INTERP_EXECUTE_FINISH, Interpreter
+from rs274ngc.remap import parse
+from tests.unit.rs274ngc.conftest import Recorder
+
+
+@pytest.fixture
+def machine(tmp_path):
+    """An interpreter with these REMAP lines, NGC procedures and Python modules."""
+
+    def make(*remaps, python="", oword="", namedparams="", **procedures):
+        lines = ["[RS274NGC]", f"SUBROUTINE_PATH={tmp_path}", *(f"REMAP={remap}" for remap in remaps)]
+        if python or oword or namedparams:
+            lines += ["[PYTHON]", "TOPLEVEL=toplevel.py", f"PATH_PREPEND={tmp_path}"]
+            head = "from interpreter import *\nimport emccanon\n"
+            for name, text in (("remap", python), ("oword", oword), ("namedparams", namedparams)):
+                (tmp_path / f"{name}.py").write_text(head + textwrap.dedent(text))
+            (tmp_path / "toplevel.py").write_text("import remap, oword, namedparams\n")
+        for name, text in procedures.items():
+            (tmp_path / f"{name}.ngc").write_text(f"o<{name}> sub\n{text}\no<{name}> endsub [5]\nm2\n")
+        ini = tmp_path / "machine.ini"
+        ini.write_text("\n".join(lines) + "\n")
+        canon = Recorder(tools=tooltable.DEFAULT)
+        interp = Interpreter(canon, IniFile(str(ini)))
+        interp.init()
+        return interp, canon
+
+    return make
+
+
+def typed(interp, *lines):
+    """Lines typed in, with whatever they call."""
+    results = []
+    for line in lines:
+        results.append(interp.execute_mdi(line))
+        while interp.call_level:
+            interp.read()
+            results.append(interp.execute())
+    return results
+
+
+def messages(canon):
+    return [text for (text,) in canon.named("message")]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("N5 ngc=x", "'N5' is no code that can be remapped"),
+        ("M400", "either ngc= or python="),
+        ("M400 ngc=x python=y", "either ngc= or python="),
+        ("M400 ngc=x modalgroup=2", "groups 4 to 10"),
+        ("G88.6 ngc=x modalgroup=2", "group 1"),
+        ("M400 ngc=x argspec=?", "argspec"),
+        ("M400 body=x", "'body=x' is no option"),
+    ],
+)
+def test_a_wrong_line_says_what_would_be_right(text, message):
+    with pytest.raises(ConfigError, match=message):
+        parse(text)
+
+
+def test_words_become_named_parameters(machine):
+    interp, canon = machine("M400 argspec=Pq ngc=m400", m400="(debug,#<p> #<_remap_level>)\ng0 x#<p>")
+    typed(interp, "m400 p3", "(debug,#<_value> #<_remap_level>)")
+    assert messages(canon) == ["3.000000 1.000000", "5.000000 0.000000"]
+    assert canon.named("straight_traverse")[0][1] == 3.0
+
+
+def test_words_become_numbered_parameters(machine):
+    interp, canon = machine("M400 argspec=@PQr ngc=m400", m400="(debug,#1 #2 #3)")
+    typed(interp, "m400 q2 p1")
+    assert messages(canon) == ["1.000000 2.000000 0.000000"]
+
+
+@pytest.mark.parametrize(
+    ("argspec", "line", "message"),
+    [
+        ("PQ", "m400", r"user-defined M400: missing: P Q$"),
+        ("^>", "m400", r"user-defined M400:F>0,S>0,$"),
+    ],
+)
+def test_what_is_missing_is_named(machine, argspec, line, message):
+    interp, _ = machine(f"M400 argspec={argspec} ngc=m400", m400="")
+    with pytest.raises(InterpError) as refused:
+        interp.execute_mdi(line)
+    assert refused.match(message.rstrip("$"))
+
+
+def test_a_line_goes_on_after_its_remapped_code(machine):
+    interp, canon = machine("M400 modalgroup=5 argspec=P ngc=m400", m400="g1 f10 y#<p>")
+    typed(interp, "m400 p2 g0 x1 m5")
+    names = [name for name, _ in canon.calls]
+    assert names[-3:] == ["straight_feed", "stop_spindle_turning", "straight_traverse"]
+
+
+def test_a_code_is_the_built_in_one_inside_its_own_procedure(machine):
+    interp, canon = machine("M6 modalgroup=6 ngc=change", "F ngc=feed", change="m6\ng0 z9", feed="f99")
+    typed(interp, "t1 m6", "f7")
+    assert len(canon.named("change_tool")) == 1
+    assert canon.named("set_feed_rate")[-1] == (99.0,)
+
+
+def test_endless_remapping_is_refused(machine):
+    interp, _ = machine("M400 ngc=m400", m400="m400")
+    with pytest.raises(InterpError, match="maximum nesting of remapped blocks exceeded"):
+        typed(interp, "m400")
+    assert interp.call_level == 0
+
+
+def test_a_python_function_sees_the_line_and_calls_the_canon(machine):
+    interp, canon = machine(
+        "G88.6 modalgroup=1 argspec=XYp python=g886",
+        python="""
+            def g886(self, **words):
+                c = self.blocks[self.remap_level]
+                emccanon.MESSAGE(f"{sorted(words.items())} {c.comment} {c.x_flag} {c.g_modes[1]}")
+                self.execute("G0 X%f" % words["x"])
+                self.params["_result"] = self.current_x * 2
+                return INTERP_OK
+            """,
+    )
+    typed(interp, "g88.6 x1 y2 p3 (here)", "(debug,#<_result>)")
+    assert messages(canon) == ["[('p', 3.0), ('x', 1.0), ('y', 2.0)] here True 886", "2.000000"]
+
+
+def test_prolog_and_epilog_share_the_procedures_level(machine):
+    interp, canon = machine(
+        "M400 prolog=before ngc=m400 epilog=after",
+        m400="#<result>=[#<given>*3]",
+        python="""
+            def before(self, **words):
+                self.params["given"] = 4
+                return INTERP_OK
+            def after(self, **words):
+                emccanon.MESSAGE(f"{self.params['result']} {self.return_value} {self.value_returned}")
+                return INTERP_OK
+            """,
+    )
+    typed(interp, "m400")
+    assert messages(canon) == ["12.0 5.0 1"]
+
+
+def test_a_generator_waits_for_the_machine(machine):
+    interp, canon = machine(
+        "M400 python=wait",
+        python="""
+            def wait(self, **words):
+                emccanon.MESSAGE("before")
+                yield INTERP_EXECUTE_FINISH
+                emccanon.MESSAGE("after")
+            """,
+    )
+    assert interp.execute_mdi("m400 g0 x1") == INTERP_EXECUTE_FINISH
+    assert messages(canon) == ["before"]
+    interp.synch()
+    interp.read()
+    interp.execute()
+    assert messages(canon) == ["before", "after"]
+    assert interp.call_level == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("return 'no tool'", "no tool"),
+        ("self.set_errormsg('broken'); return INTERP_ERROR", "broken"),
+        ("return 1/0", r"Python exception in remap.m400: ZeroDivisionError: division by zero \(remap.py:4\)"),
+        ("self.execute('g1 x1')", "Cannot do g1 with zero feed rate"),
+    ],
+)
+def test_errors_of_functions_are_errors_of_the_program(machine, body, message):
+    interp, _ = machine("M400 python=m400", python=f"def m400(self, **words):\n    {body}\n")
+    with pytest.raises(InterpError, match=message):
+        interp.execute_mdi("m400")
+    assert typed(interp, "g0 x1") == [0]
+
+
+def test_python_functions_are_o_word_subroutines_and_predefined_parameters(machine):
+    interp, canon = machine(
+        oword="def double(self, x):\n    return 2.0 * x\n",
+        namedparams="def _answer(self):\n    return 42\n",
+    )
+    typed(interp, "o<double> call [21]", "(debug,#<_value> #<_answer>)")
+    assert messages(canon) == ["42.000000 42.000000"]
