@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from tests.support.machine import PATIENCE, ROOT, wait_until
@@ -13,6 +14,11 @@ PHONE = (390, 844)
 TIMEOUT_MS = PATIENCE * 1000
 EXPECTED = re.compile(r"WebSocket connection|status of 409")  # a cut network; an upload that asks whether to replace
 GRAPHICS = "GL Driver Message"
+
+
+def module(text: str) -> Callable[[Any], None]:
+    """Answers a request with this JavaScript in place of the server's."""
+    return lambda route: route.fulfill(body=text, content_type="text/javascript")
 
 
 class Screen:
@@ -44,7 +50,7 @@ class Screen:
         for name, value in remembered.items():
             self.context.add_init_script(f"localStorage['pyemc.{name}'] ??= {value!r}")
         for pattern, text in (files or {}).items():
-            self.page.route(pattern, lambda route, body=text: route.fulfill(body=body, content_type="text/javascript"))
+            self.page.route(pattern, module(text))
         self._cut = False
         self.page.route_web_socket("**/ws", self._wire)
         self.page.goto(f"http://127.0.0.1:{port}/" + (f"#token={token}" if token else ""))
