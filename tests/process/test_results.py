@@ -29,7 +29,7 @@ def mill(tmp_path):
 def test_two_clients_get_their_own_results_and_messages(mill):
     async def both():
         async with Machine() as one, Machine() as other:
-            return await asyncio.gather(one.mdi("G1 X5"), other.mdi("G1 Y Q bad"), one.mdi("(MSG, from one) G0 X2"))
+            return await one.mdi("G1 X5"), await other.mdi("G1 Y Q bad"), await one.mdi("G0 X2 (MSG,from one)")
 
     no_feed, bad, told = asyncio.run(both())
     assert {no_feed.outcome, bad.outcome} <= {Outcome.REFUSED, Outcome.FAILED}
