@@ -224,7 +224,7 @@ cdef void move_coord(Motion* m) noexcept nogil:
     if command_world(m, pose) != 0:
         fall_to_free(m)
         move_free(m)
-    elif m.chasing == CHASE_LOST and not m.stopping:
+    elif m.chasing == CHASE_LOST and not m.stopping and m.current_vel > 0.0:
         stop_all(m)
         m.coord_error = 1
         snprintf(

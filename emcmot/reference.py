@@ -15,6 +15,7 @@ from emcmot.kins import (
     genhexkins,
     genserkins,
     lineardeltakins,
+    matrixkins,
     maxkins,
     millturn,
     pentakins,
@@ -34,8 +35,8 @@ from emcmot.kins.kinematics import KinematicsModule, Value
 from emcmot.parameters import PARAMETERS
 
 KINEMATICS = (
-    *(corexykins, fiveaxiskins, genhexkins, genserkins, lineardeltakins, maxkins, millturn, pentakins, pumakins),
-    *(rosekins, rotarydeltakins, rotatekins, scarakins, scorbotkins, tripodkins, trivkins),
+    *(corexykins, fiveaxiskins, genhexkins, genserkins, lineardeltakins, matrixkins, maxkins, millturn, pentakins),
+    *(pumakins, rosekins, rotarydeltakins, rotatekins, scarakins, scorbotkins, tripodkins, trivkins),
     *(xyzab_tdr_kins, xyzac_trt_kins, xyzbc_trt_kins),
 )
 LAST_JOINT = 5

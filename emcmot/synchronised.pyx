@@ -43,7 +43,8 @@ cdef void synchronised_cycle(Motion* m) noexcept nogil:
     watch_index(m)
     turn_back(m)
     tp_set_at_speed(m.tp, spindles_at_speed(m))
-    tp_set_feed_inhibit(m.tp, m.feed_inhibit)
+    # joints that another geometry has moved away from their pose catch up before the next move begins
+    tp_set_feed_inhibit(m.tp, m.feed_inhibit or (m.chasing and m.tp_status.current_vel == 0.0))
     for n in range(m.num_joints):
         if not m.joint[n].home.homing:
             m.joint[n].unlock = n == wanted

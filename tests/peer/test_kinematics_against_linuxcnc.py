@@ -30,7 +30,7 @@ def same(ours: list[float], theirs: list[float] | None, tolerance: float) -> boo
     return all(min(gap, abs(gap - WHOLE_TURN)) < tolerance for gap in gaps)
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+@pytest.mark.parametrize("case", [case for case in CASES if case.in_2_9], ids=str)
 def test_poses_and_joints_are_those_of_linuxcnc(case: Case, tmp_path: Path) -> None:
     rng = random.Random(str(case))
     kins = case.module()

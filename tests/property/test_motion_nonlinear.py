@@ -6,14 +6,16 @@ import random
 
 import pytest
 
-from emcmot.kins import genhexkins, rotatekins, scarakins
+from emcmot.kins import genhexkins, matrixkins, rotatekins, scarakins
 from emcmot.kins.kinematics import KinematicsModule
 from emcmot.sim import Motion
 from nml.emc.emcmot import MotCommand as C
+from tests.support.mill import line
 
 ROUNDING = 1e-6
 START = {
     "scarakins": [20.0, 70.0, 100.0, 10.0, 0.0, 0.0],
+    "matrixkins": [0.0] * 9,
     "rotatekins": [50.0, 20.0, 0.0, 0.0, 0.0, 30.0, 0.0, 0.0, 0.0],
 }
 
@@ -76,3 +78,20 @@ def test_a_program_that_asks_too_much_of_a_joint_stops_within_the_limits(module:
     assert within_limits(m)
     assert all("can't follow the path" in text or "reach" in text for text in texts)
     assert m["motion.in-position"]
+
+
+def test_joints_that_another_geometry_moves_away_catch_up_before_the_next_move() -> None:
+    kins = matrixkins.create()
+    m = at_home(kins)
+    m.send(C.COORD)
+    m.step(2)
+    line(m, 10, 20, 30)
+    m.run_until_rest()
+    kins.set_parameter("C_zz", 1.05)
+    line(m, 11, 12, 13, id=2, vel=30.0)
+    m.step(3)
+    assert m["joint.0.pos-cmd"] == pytest.approx(10.0), "the move waits"
+    m.run_until_rest()
+    assert [m[f"joint.{n}.pos-cmd"] for n in range(3)] == pytest.approx([11.0, 12.0, 13.0 * 1.05])
+    assert m.errors() == []
+    assert within_limits(m)

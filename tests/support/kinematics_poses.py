@@ -12,6 +12,7 @@ from emcmot.kins import (
     genhexkins,
     genserkins,
     lineardeltakins,
+    matrixkins,
     maxkins,
     millturn,
     pentakins,
@@ -41,6 +42,7 @@ class Case:
     way: int = 0
     arguments: dict[str, str] = field(default_factory=dict)
     pins: dict[str, float] = field(default_factory=dict)
+    in_2_9: bool = True
     stock_forward: bool = True  # whether LinuxCNC's forward undoes its inverse, so that it can be compared
 
     def __str__(self) -> str:
@@ -61,6 +63,7 @@ SLIDE, TURN, TILT, ARM = (-200.0, 200.0), (-179.0, 179.0), (-80.0, 80.0), (-70.0
 TABLE_NAMES = ("x-rot-point", "y-rot-point", "z-rot-point", "x-offset", "y-offset", "z-offset", "tool-offset")
 TABLE = dict(zip(TABLE_NAMES, (3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0), strict=True))
 DUAL = {name: TABLE[name] for name in TABLE if name not in ("y-offset", "tool-offset")} | {"tool-offset-z": 19.0}
+SKEW = {"C_xx": 0.99, "C_yy": 1.01, "C_xy": 0.02, "C_xz": -0.01, "C_yx": 0.03, "C_zx": -0.02, "C_zy": 0.04}
 PUMA_RANGES = (TURN, (-90, -30), (-40, 40), (-160, 160), (10, 100), TURN)
 
 CASES = (
@@ -89,6 +92,7 @@ CASES = (
         pins={"pivot-length": 120.0},
         stock_forward=False,
     ),
+    Case("matrixkins", matrixkins.create, [SLIDE] * 9, pins=SKEW, in_2_9=False),
     Case("scorbot-kins", scorbotkins.create, (TURN, (-20, 85), (-80, -25), TURN, TURN)),
     Case("pumakins", pumakins.create, PUMA_RANGES, pins={"A2": 320.0, "D6": 55.0}),
     Case("pumakins", pumakins.create, [SLIDE] * 6, way=1),
