@@ -19,6 +19,7 @@ import { recall, remember } from "./prefs.js";
  * @property {string} icon a name of core/icons.js
  * @property {number} order place in the rail
  * @property {string} [beside] id of a panel that is shown to the right where there is room
+ * @property {boolean} [wizard] shown where no machine runs, and only there
  * @property {(config: any) => boolean} [when] whether this machine has it
  * @property {(root: HTMLElement, app: import("./app.js").App) => Mounted | void | Promise<Mounted | void>} mount
  */
@@ -51,7 +52,7 @@ export class Panels {
   /** Build the rail for this machine and show the panel that was open last. */
   start() {
     const config = this.app.v.config ?? {};
-    this.#panels = registered.filter((panel) => panel.when?.(config) ?? true);
+    this.#panels = registered.filter((panel) => Boolean(panel.wizard) === Boolean(config.wizard) && (panel.when?.(config) ?? true));
     const rail = /** @type {HTMLElement} */ (document.getElementById("rail"));
     setAttribute(rail, "aria-label", _("Pages"));
     fill(rail, h("div", { role: "tablist", "aria-orientation": "vertical", class: "tabs" }, this.#panels.map((panel) => this.#tab(panel))));

@@ -15,7 +15,7 @@ registerPanel({
   title: () => _("Sample machines"),
   icon: "folder",
   order: 1,
-  when: (config) => Boolean(config.wizard),
+  wizard: true,
   async mount(root, app) {
     const samples = await app.call("wizard.samples");
     const result = h("div", { class: "stack" });
@@ -33,7 +33,7 @@ registerPanel({
   title: () => _("Wizard"),
   icon: "wizard",
   order: 2,
-  when: (config) => Boolean(config.wizard),
+  wizard: true,
   async mount(root, app) {
     const questions = await app.call("wizard.questions");
     const form = new Form(questions);
@@ -87,7 +87,7 @@ async function startMachine(app, ini) {
 
 /** The questions as a form; a question with `when` is asked only if other answers fit. */
 class Form {
-  /** @type {Map<string, {question: Question, element: HTMLElement, read: () => any, error: HTMLElement}>} */
+  /** @type {Map<string, {question: Question, element: HTMLElement, read: () => any, error: HTMLElement, unit: HTMLElement}>} */
   #fields = new Map();
 
   /** @param {Question[]} questions */
@@ -101,12 +101,18 @@ class Form {
   #add(question) {
     const { input, read } = control(question);
     const error = h("p", { class: "error", role: "alert" });
-    this.#fields.set(question.key, { question, read, error, element: h("div", null, field(label(question), input, question.unit), error) });
+    const unit = h("span", { class: "unit" });
+    const element = h("div", null, field(label(question), input), error);
+    element.firstElementChild.append(unit);
+    this.#fields.set(question.key, { question, read, error, unit, element });
   }
 
   #sift() {
     const answers = this.answers();
-    for (const { question, element } of this.#fields.values()) element.hidden = !asked(question.when, answers);
+    for (const { question, element, unit } of this.#fields.values()) {
+      element.hidden = !asked(question.when, answers);
+      unit.textContent = question.unit.replace("unit", answers.units); // lengths are in the unit that was chosen
+    }
   }
 
   /** @returns {Record<string, any>} */
