@@ -295,7 +295,7 @@ CASES = {
         "eoffset_per_angle names=e", "e", "f:e.angle b:e.enable-in b:e.is-on s:e.fnum",
         "s:e.kcounts f:e.kreciprocal b:e.enable-out b:e.clear b:e.is-off",
         lambda chance: ([i * 7 % 360, i % 90 > 20, i < 370, i // 90] for i in range(SAMPLES)),
-        "e.fmult=4 e.radius-ref=10 e.start-angle=15",
+        "e.fmult=4 e.radius-ref=10 e.start-angle=15.3",
     ),
     "limit3": Case(
         "limit3", "limit3.0", "f:limit3.0.in b:limit3.0.enable", "f:limit3.0.out",

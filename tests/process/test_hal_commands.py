@@ -196,3 +196,34 @@ def test_a_component_that_died_is_told_to_the_next_user(tmp_path: Path) -> None:
     program.chmod(0o755)
     done = script(tmp_path, f"loadrt threads\nloadusr -W {program}\nwaitusr short\nunloadrt threads\n")
     assert "HAL: component 'short' died without leaving; removed" in done.stderr
+
+
+@pytest.fixture
+def picture(tmp_path: Path) -> Path:
+    pytest.importorskip("matplotlib")
+    return tmp_path / "out.png"
+
+
+def is_picture(path: Path) -> bool:
+    """Whether it is a PNG that matplotlib can read, with something drawn on it."""
+    from matplotlib import image
+
+    pixels = image.imread(path)
+    return path.read_bytes().startswith(b"\x89PNG\r\n") and pixels.min() < 0.5 < pixels.max()
+
+
+def test_a_capture_is_drawn_as_a_picture(session: None, picture: Path) -> None:
+    done = run("scope", "--capture", "siggen.0.sine", "siggen.0.square", "--thread", "thread1", "--samples", "50",
+               "--png", str(picture))  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert is_picture(picture)
+
+
+def test_a_latency_histogram_is_drawn_as_a_picture(own_namespace: str, picture: Path) -> None:
+    code = "import sys; from hal.latency import histogram_main; sys.exit(histogram_main(sys.argv[1:]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "--seconds", "0.3", "--png", str(picture)],
+        env=environment(), capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert is_picture(picture)
