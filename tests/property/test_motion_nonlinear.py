@@ -88,6 +88,7 @@ def test_joints_that_another_geometry_moves_away_catch_up_before_the_next_move()
     line(m, 10, 20, 30)
     m.run_until_rest()
     kins.set_parameter("C_zz", 1.05)
+    m.step(2)
     line(m, 11, 12, 13, id=2, vel=30.0)
     m.step(3)
     assert m["joint.0.pos-cmd"] == pytest.approx(10.0), "the move waits"
