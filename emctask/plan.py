@@ -60,6 +60,7 @@ class Plan:
         self.at_end = False
         self.must_synch = True
         self.file = ""
+        self._last_line = ""
         self.dry_run: RunFromLine | None = None
         """Run from line, as long as the lines before the first one are being read."""
         self._modal_version = (-1, -1)
@@ -110,6 +111,7 @@ class Plan:
             self.at_end = True
 
     def _begin(self, source: Source) -> None:
+        self._last_line = ""
         self.source = source
         self._before = self.canon.block = Block(self.file, 0)
         self.canon.end_block(self._current_modes(), self._offsets)
@@ -128,6 +130,11 @@ class Plan:
     def active(self) -> bool:
         """Is a program or an MDI line under way, be it only in the machine?"""
         return self.source is not Source.NOTHING
+
+    @property
+    def program_line(self) -> str:
+        """Text of the program's line that was read last; it stays when the program is over."""
+        return self.interp.block_text.strip() if self.source is Source.PROGRAM else self._last_line
 
     @property
     def typed(self) -> bool:
@@ -217,6 +224,7 @@ class Plan:
 
     def finish(self) -> None:
         """Everything that was read is done: nothing is under way any more."""
+        self._last_line = self.program_line
         self.source = Source.NOTHING
         self.waiting_for_synch = False
         self.must_synch |= self.canon.tool_data_changed
@@ -260,6 +268,7 @@ class Plan:
             standing.write_offsets(self.interp, self._restore.offsets)
         self.canon.forget()
         self.finish()
+        self._last_line = ""
         self.must_synch = True
 
     def block_in_execution(self) -> Block | None:

@@ -110,7 +110,7 @@ class StatusWriter:
             self._offsets = dict(task.offsets)
             for name, value in self._offsets.items():
                 setattr(t, name, value)
-        for name, text in (("file", plan.file), ("command", task.mdi_text)):
+        for name, text in (("file", plan.file), ("command", task.mdi_text or plan.program_line)):
             if self._texts.get(name) != text:
                 self._texts[name] = text
                 setattr(t, name, text[:254])

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 import shlex
+import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+import posix_ipc
 
 import nml
 from hal.session import find_hal_file
@@ -21,6 +24,7 @@ PLANNER = ("TRAJ", "TPMOD", "tpmod", "-t")
 HOMING = ("EMCMOT", "HOMEMOD", "homemod", "-m")
 PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
+SYSTEM_PYTHON = Path("/usr/bin/python3")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
 
 
@@ -30,6 +34,13 @@ class HalFile:
 
     path: Path
     arguments: list[str]
+
+
+def _packages() -> list[str]:
+    """Folders of our packages and of what they import, the latter for scripts that name a system Python like ours."""
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    same = os.path.realpath(SYSTEM_PYTHON).endswith(version)
+    return [str(PACKAGES_FOLDER), *([str(Path(posix_ipc.__file__).parent)] if same else [])]
 
 
 class Configuration:
@@ -136,7 +147,7 @@ class Configuration:
             "HALLIB_PATH": os.pathsep.join([*map(str, self._hal_folders), ".", str(HALLIB)]),
             "LINUXCNC_NCFILES_DIR": str(NC_FILES),
             "PATH": self.programs.search_path(),
-            "PYTHONPATH": os.pathsep.join(filter(None, [str(PACKAGES_FOLDER), variables.get("PYTHONPATH")])),
+            "PYTHONPATH": os.pathsep.join(filter(None, [*_packages(), variables.get("PYTHONPATH")])),
         }
         if self.nml_file is not None:
             variables["NMLFILE"] = str(self.nml_file)
