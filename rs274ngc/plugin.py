@@ -82,7 +82,7 @@ class Plugin:
         return callable(getattr(self.namespace.get(module), name, None))
 
     def steps(self, module: str, name: str, arguments: Any, words: dict[str, float]) -> Iterator[int]:
-        """Call a function: yields INTERP_EXECUTE_FINISH where it wants the machine to come to rest; InterpError when it fails."""
+        """Call a function; yields INTERP_EXECUTE_FINISH where it wants the machine to come to rest."""
         if not self.has(module, name):
             raise InterpError(f"Python plug-in: there is no function {module}.{name}")
         self.error_message = ""

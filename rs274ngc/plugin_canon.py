@@ -1,4 +1,4 @@
-"""The module ``emccanon`` that Python remaps import: LinuxCNC's canonical functions, made by the canon of the interpreter.
+"""The module ``emccanon`` that Python remaps import: LinuxCNC's canonical functions, done by the interpreter's canon.
 
 Names in capitals are the methods of ``canon.Canon``; the few whose arguments differ are written out.
 """
