@@ -1,12 +1,12 @@
 """Motion along the planned path with limited jerk, one servo period at a time.
 
-The state is the speed v = du/dt and its change a. The path ahead is looked at as *stretches*: spans with similar limits taken as one,
-each with a largest speed, acceleration and jerk along the path. Of every stretch within reach it must be possible to slow down
-to its speed before it begins, and to stand still where a move ends in a stop, or the known path does. If that is
-possible now, it still is after a period of the hardest braking: so there is always a way to keep all limits.
+The state is the speed v = du/dt and its change a. The path ahead is looked at as *stretches*: spans with similar limits
+taken as one, each with a largest speed, acceleration and jerk along the path. It must be possible to slow down to the speed
+of each before it begins, with an acceleration that it bears, and to stand still where a move ends in a stop or the known
+path does. What is possible now still is after a period of the hardest braking: so there is always a way to keep all limits.
 
 A period takes the acceleration that leads to the wanted speed (feed, override, hold) without passing it; where that would
-make one of the stretches unreachable, it takes the largest one that does not. Nothing is planned further ahead, so every
+make one of the stretches unreachable, it takes the nearest one that does not. Nothing is planned further ahead, so every
 command acts at once.
 Speeds here are those of `smooth`, which adds what makes the curvature continuous.
 """
@@ -25,8 +25,13 @@ cdef enum:
     HALVINGS = 10                # of the range of accelerations, where the wanted one is too large
     SPANS_PER_PERIOD = 5000      # bound of the way of one period
 
+cdef enum Verdict:
+    FEASIBLE = 0
+    TOO_FAST = 1                 # for a stretch ahead
+    TOO_HARD = 2                 # braking: it cannot be taken back in time
+
 cdef double NO_WAY = 1e-12       # u
-cdef double LEAST_SPEED = 1e-9
+cdef double LANDING = 0.2     # jerk dt^3 from the end, the rest of the way is gone in one period
 cdef double ALIKE = 0.85         # ratio of limits from which two spans may be one stretch
 cdef double SHORT = 0.04         # of the way that braking takes: shorter spans are taken together anyway
 cdef double REACH = 1.25         # the known path should be longer than braking takes, by this
@@ -45,7 +50,6 @@ cdef inline Stretch* _stretch(TpState* tp, int k) noexcept nogil:
 cdef void forget_stretches(TpState* tp) noexcept nogil:
     """The path ahead is another one now; at rest."""
     tp.stretch_count = 0
-    tp.stretched = tp.active
     tp.a = 0.0
     tp.hungry = 1
 
@@ -55,6 +59,8 @@ cdef void _gather(TpState* tp) noexcept nogil:
     cdef const Span* span
     cdef Stretch* last
     cdef int count
+    if tp.stretch_count == 0:
+        tp.stretched = tp.active
     for count in range(GATHERED_PER_PERIOD):
         if tp.stretched >= tp.span_tail:
             return
@@ -134,29 +140,47 @@ cdef double _braking_way(double v, double a, double to, double push, double jerk
     return fmax(0.0, _settling_way(top, to, push, jerk) - top * t + jerk * t * t * t / 6.0)
 
 
-cdef int _in_reach(TpState* tp, double v, double a, double way) noexcept nogil:
-    """Whether all stretches ahead can be met at their speeds, from v and a, `way` from here."""
+cdef double _meeting_way(double v, double a, double to, double push, double jerk, double later) noexcept nogil:
+    """Least way until the speed fits a stretch in which only the jerk `later` takes back an acceleration."""
+    cdef double t = a / jerk
+    if a > 0.0 and v + 0.5 * a * a / later > to:
+        return v * t + a * t * t / 3.0 + _settling_way(fmax(to, v + 0.5 * a * t), to, push, jerk)
+    return _braking_way(v, a, to, push, jerk)
+
+
+cdef inline int _relaxed(double v, double a, double push, double jerk, double distance) noexcept nogil:
+    """Whether an acceleration that is taken back from now on is no more than `push` after a distance."""
+    cdef double t = (fabs(a) - push) / jerk
+    return t <= 0.0 or v * t + 0.5 * a * t * t - copysign(jerk, a) * t * t * t / 6.0 <= distance
+
+
+cdef Verdict _judge(TpState* tp, double v, double a, double way) noexcept nogil:
+    """Whether all stretches ahead can be met at their speeds and accelerations, from v and a, `way` from here."""
     cdef const Stretch* here = _stretch(tp, 0)
     cdef const Stretch* following
-    cdef double distance = here.length - way, push = here.push, jerk = here.jerk, rest
+    cdef double distance = here.length - way, push = here.push, jerk = here.jerk, slower, rest, room
     cdef int k
     for k in range(tp.stretch_count):
+        room = fmax(0.0, distance - v * tp.dt)       # jerk changes between periods only: be there a period early
         rest = _braking_way(v, a, 0.0, push, jerk)
         if _span(tp, here.last).stop:
-            return rest <= distance
+            return FEASIBLE if rest <= room else TOO_FAST
         if k == tp.stretch_count - 1:
-            tp.hungry |= rest * REACH >= distance
-            return rest <= distance
-        if rest < distance:
-            return 1
+            tp.hungry |= rest * REACH >= room
+            return FEASIBLE if rest <= room else TOO_FAST
+        if rest < room:
+            return FEASIBLE
         following = _stretch(tp, k + 1)
-        if _braking_way(v, a, following.now, push, fmin(jerk, following.jerk)) > distance:
-            return 0
+        slower = fmin(jerk, following.jerk)
+        if _meeting_way(v, a, following.now, push, jerk, slower) > room:
+            return TOO_FAST
+        if v + copysign(0.5 * a * a / jerk, a) <= following.now and not _relaxed(v, a, following.push, jerk, room):
+            return TOO_FAST if a > 0.0 else TOO_HARD
         here = following
         distance += here.length
         push = fmin(push, here.push)
-        jerk = fmin(jerk, here.jerk)
-    return 1
+        jerk = slower
+    return FEASIBLE
 
 
 # --- one period -------------------------------------------------------------------------------------------------------
@@ -166,50 +190,38 @@ cdef inline double _ramp(double gap, double jerk, double dt) noexcept nogil:
     return sqrt(0.25 * jerk * jerk * dt * dt + 2.0 * jerk * gap) - 0.5 * jerk * dt
 
 
-cdef double _gentle(TpState* tp, double v, int up) noexcept nogil:
-    """Largest acceleration (`up`) or braking now that can be back within the limits of each stretch when it begins.
-
-    Speeding up, those that will be slower than the machine is now are none of its concern: it must brake for them anyway.
-    """
-    cdef const Stretch* here = _stretch(tp, 0)
-    cdef const Stretch* following
-    cdef double most = here.push, distance = here.length, jerk = here.jerk, speed
-    cdef int k
-    for k in range(1, tp.stretch_count):
-        following = _stretch(tp, k)
-        jerk = fmin(jerk, following.jerk)
-        speed = fmax(LEAST_SPEED, following.now if up else v)
-        if not up or following.now >= v:
-            most = fmin(most, following.push + jerk * distance / speed)
-        if jerk * distance > here.push * fmax(speed, v):
-            break
-        distance += following.length
-    return most
+cdef inline Verdict _outcome(TpState* tp, double v, double a) noexcept nogil:
+    """The same for the acceleration `a` at the end of this period."""
+    return _judge(tp, v + 0.5 * (tp.a + a) * tp.dt, a, tp.dt * (v + (2.0 * tp.a + a) * tp.dt / 6.0))
 
 
 cdef double _choose(TpState* tp, double v, double target) noexcept nogil:
-    """Acceleration at the end of this period."""
+    """Acceleration at the end of this period: the feasible one that is nearest to what the target speed asks for."""
     cdef const Stretch* here = _stretch(tp, 0)
     cdef double dt = tp.dt, change = here.jerk * dt
-    cdef double gap = target - v - 0.5 * tp.a * dt, most = _gentle(tp, v, gap >= 0.0)
-    cdef double wanted = copysign(fmin(most, _ramp(fabs(gap), here.jerk, 2.0 * dt)), gap)
-    cdef double low, high, middle
+    cdef double gap = target - v - 0.5 * tp.a * dt
+    cdef double wanted = copysign(fmin(here.push, _ramp(fabs(gap), here.jerk, 2.0 * dt)), gap)
+    cdef double low = -fmin(here.push, _ramp(fmax(0.0, v + 0.5 * tp.a * dt), here.jerk, dt))
+    cdef double high = tp.a + change, middle
+    cdef Verdict verdict
     cdef int k
-    wanted = fmax(tp.a - change, fmin(tp.a + change, wanted))
-    if _in_reach(tp, v + 0.5 * (tp.a + wanted) * dt, wanted, dt * (v + (2.0 * tp.a + wanted) * dt / 6.0)):
+    wanted = fmax(tp.a - change, fmin(high, wanted))
+    low = fmin(wanted, fmax(tp.a - change, low))
+    verdict = _outcome(tp, v, wanted)
+    if verdict == FEASIBLE:
         return wanted
-    low = fmax(tp.a - change, -fmin(here.push, _ramp(fmax(0.0, v + 0.5 * tp.a * dt), here.jerk, dt)))
-    low = fmin(low, tp.a + change)
-    high = wanted
-    if low >= high:
-        return wanted
+    if verdict == TOO_FAST:
+        high = wanted
+    else:
+        low = wanted
     for k in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if _in_reach(tp, v + 0.5 * (tp.a + middle) * dt, middle, dt * (v + (2.0 * tp.a + middle) * dt / 6.0)):
-            low = middle
-        else:
+        verdict = _outcome(tp, v, middle)
+        if verdict == TOO_FAST or (verdict == FEASIBLE and middle > wanted):
             high = middle
-    return low
+        else:
+            low = middle
+    return high if high > wanted else low
 
 
 cdef void move_smoothly(TpState* tp) noexcept nogil:
@@ -243,9 +255,9 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
     if target == 0.0 and v <= least and fabs(a) * dt <= 2.0 * least:
         tp.w = tp.a = 0.0
         return
-    tp.a = a
+    tp.a = a if v > 0.0 else fmax(0.0, a)
     tp.w = fmax(0.0, v) ** 2
-    if _ends(tp, 0) and _stretch(tp, 0).length <= 4.0 * least * dt and v <= 4.0 * least:
+    if _ends(tp, 0) and _stretch(tp, 0).length <= LANDING * least * dt and v <= least:
         way = _stretch(tp, 0).length + NO_WAY
     _go(tp, fmax(0.0, way))
 

@@ -35,7 +35,6 @@ cdef void choose_smoothing(TpState* tp, double tolerance) noexcept nogil:
     tp.window = 1
     tp.a = 0.0
     tp.stretch_count = 0
-    tp.stretched = tp.span_tail
     tp.hungry = 1
     tp.draining = tp.slot = 0
     if not tp.smooth:
