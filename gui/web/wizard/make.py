@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import secrets
 import shutil
-from importlib.resources import files
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +54,7 @@ def files(machine: Machine) -> dict[str, str]:
     return {
         f"{name}.ini": inifile.text(machine),
         f"{name}.hal": halfile.text(machine),
-        f"{name}.nml": files("nml").joinpath("linuxcnc.nml").read_text("utf-8"),
+        f"{name}.nml": resources.files("nml").joinpath("linuxcnc.nml").read_text("utf-8"),
         f"{name}.var": "",
         "tool.tbl": "".join(f"{line}\n" for line in TOOLS[machine.units]),
         "nc_files/welcome.ngc": welcome(machine),
