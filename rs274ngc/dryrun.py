@@ -5,9 +5,9 @@
     python -m rs274ngc.dryrun --state-at N PROGRAM -i INI
     python -m rs274ngc.dryrun --mdi 'G1 X5 F100' -i INI
 
-The last three answer with one line of JSON. The machine begins at ``--start`` (machine coordinates, machine units),
-with ``--tool`` in its spindle, with the coordinate systems of the INI file's parameter file, after the blocks
-``--begin``.
+With ``--wait`` alone the arguments come later, as a JSON list in one line of the standard input. The last three
+answer with one line of JSON. The machine begins at ``--start`` (machine coordinates, machine units), with ``--tool``
+in its spindle, with the coordinate systems of the INI file's parameter file, after the blocks ``--begin``.
 
 The end frame says whether the picture is to be trusted: ``outside`` has every move whose controlled point (the
 tool's tip plus the tool offset in force) leaves the limits of the INI file, arcs widened by the chord error, and
@@ -39,6 +39,7 @@ JUMP = 4  # kind of the first row: where the tool stands before the program
 CHORD_ERROR = 0.01  # mm
 HAND_ON = 0.3  # s between pieces of a slow program
 MOST_LISTED = 100
+NICENESS = 10
 TOLERANCE = 1e-6  # machine units beyond a limit that still count as at the limit
 ROTARY = slice(3, 6)
 MM_PER_INCH = 25.4
@@ -290,7 +291,13 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Entry point; 0: the program is right."""
-    chosen = parser().parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    if given == ["--wait"]:
+        line = sys.stdin.readline()
+        if not line:  # whoever started it has ended
+            return 0
+        given = json.loads(line)
+    chosen = parser().parse_args(given)
     try:
         ini = IniFile(Path(chosen.ini))
         if chosen.mdi is None and chosen.program is None:
@@ -314,6 +321,8 @@ def stream(ini: IniFile, chosen: argparse.Namespace) -> int:
 
     def send(rows: Any) -> None:
         frame({"frame": "rows", "rows": len(rows), "done": run.done}, rows.tobytes())
+        if run.canon.handed == len(rows):  # there is a first picture; the rest must not hold anybody up
+            os.nice(NICENESS)
 
     run = DryRun(ini, chosen, send)
     error = run.run(chosen.program)

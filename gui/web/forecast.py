@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from gui.web import frames
-from gui.web.preview import Preview, end_worker, start_worker
+from gui.web.preview import Preview
 from gui.web.state import State
+from gui.web.workers import end_worker, start_worker
 
 log = logging.getLogger(__name__)
 
@@ -49,7 +50,7 @@ class Forecast:
 
     async def _run(self, path: Path, job: int) -> None:
         """One worker, from start to its answer."""
-        worker = await start_worker(MODULE, str(self._ini), str(path), "--json", "-")
+        worker = await start_worker(MODULE, str(self._ini), str(path), "--json", "-", nice=True)
         try:
             async with asyncio.timeout(PATIENCE):
                 output, errors = await worker.communicate()

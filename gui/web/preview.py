@@ -8,10 +8,8 @@ way.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import logging
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +20,7 @@ import numpy as np
 from gui.web import frames
 from gui.web.calls import CallError
 from gui.web.state import State
+from gui.web.workers import Workers, end_worker
 
 if TYPE_CHECKING:
     from gui.web.client import Client
@@ -31,7 +30,6 @@ log = logging.getLogger(__name__)
 MODULE = "rs274ngc.dryrun"
 PIECE = 8192  # rows of a chunk
 ROTARY = slice(3, 6)
-LARGEST_HEADER = 1 << 20
 MOST_BYTES = 1 << 30  # of encoded chunks that are kept
 CHECK_SECONDS = 20.0
 ROW = np.dtype(
@@ -90,6 +88,8 @@ class Preview:
     def __init__(self, ini: Path, config: dict[str, Any], state: State) -> None:
         self.job: Job | None = None
         self._ini = ini
+        self._workers = Workers(MODULE)
+        self._workers.refill()
         self._state = state
         self._scale = np.ones(9)
         mm = config["units"]["mm_per_unit"]
@@ -147,6 +147,11 @@ class Preview:
             self._task.cancel()
             self._task = None
 
+    async def close(self) -> None:
+        """End every worker."""
+        self.cancel()
+        await self._workers.close()
+
     def _publish(self, state: str, progress: float, text: str = "") -> None:
         job = self.job
         if job is not None:
@@ -175,8 +180,8 @@ class Preview:
 
     async def _work(self, job: Job) -> dict[str, Any]:
         """Read the worker's frames; its last one."""
-        worker = await start_worker(
-            MODULE, str(job.path), "-i", str(self._ini), "--piece", str(PIECE), *self._present(modes=False)
+        worker = await self._workers.start(
+            str(job.path), "-i", str(self._ini), "--piece", str(PIECE), *self._present(modes=False)
         )
         assert worker.stdout is not None
         try:
@@ -304,7 +309,7 @@ class Preview:
 
     async def _ask(self, *arguments: str) -> dict[str, Any]:
         """Run a worker that answers with one line of JSON."""
-        worker = await start_worker(MODULE, *arguments, "-i", str(self._ini))
+        worker = await self._workers.start(*arguments, "-i", str(self._ini))
         try:
             async with asyncio.timeout(CHECK_SECONDS):
                 answer, errors = await worker.communicate()
@@ -324,23 +329,6 @@ class Preview:
                 column=error.get("column", 0), file=error.get("file", ""),
             )  # fmt: skip
         return dict(found)
-
-
-async def start_worker(module: str, *arguments: str) -> asyncio.subprocess.Process:
-    """Start one of our modules, at low priority, with pipes."""
-    return await asyncio.create_subprocess_exec(
-        "nice", sys.executable, "-P", "-m", module, *arguments,
-        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
-        limit=LARGEST_HEADER,
-    )  # fmt: skip
-
-
-async def end_worker(worker: asyncio.subprocess.Process) -> None:
-    """Kill a worker that still runs and take its end."""
-    with contextlib.suppress(ProcessLookupError):
-        if worker.returncode is None:
-            worker.kill()
-    await asyncio.shield(worker.wait())
 
 
 def describe(error: dict[str, Any]) -> str:

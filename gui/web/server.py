@@ -106,7 +106,7 @@ class Server:
                     await client.dismiss()
         for task in self._tasks:
             task.cancel()
-        self.preview.cancel()
+        await self.preview.close()
         self.forecast.stop()
         if self.scope is not None:
             await asyncio.to_thread(self.scope.stop)

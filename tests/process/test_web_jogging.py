@@ -4,10 +4,10 @@ import os
 import signal
 import time
 
-import linuxcnc
 import pytest
 
-from tests.support.machine import wait_until
+import linuxcnc
+from tests.support.machine import processes, wait_until
 from tests.support.webclient import Refused, WebClient, web_mill
 
 pytestmark = pytest.mark.process
@@ -122,6 +122,7 @@ def test_a_server_killed_in_mid_jog_leaves_a_machine_at_rest_by_its_own_incremen
     os.kill(mill.pids()["display"], signal.SIGKILL)
     mill.finish()
     assert mill.errors.count("killed by signal 9") == 1
+    wait_until(lambda: processes() == [], "its workers end with it")
     watch.status.poll()
     assert abs(watch.x() - at) < LONGEST_WAY
 

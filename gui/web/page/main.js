@@ -5,9 +5,9 @@ import { h, fill, setFlag, setText } from "./core/dom.js";
 import { _, language, loadLanguage } from "./core/i18n.js";
 import { Jogger } from "./core/jog.js";
 import { Link } from "./core/link.js";
-import { operator } from "./core/machine.js";
+import { operator, running } from "./core/machine.js";
 import { Panels } from "./core/panels.js";
-import { recall, remember } from "./core/prefs.js";
+import { keepOnServer, recall, remember } from "./core/prefs.js";
 import { Store } from "./core/store.js";
 import { setToken, token } from "./core/token.js";
 import { activeCodes } from "./frame/codes.js";
@@ -34,8 +34,9 @@ let built = false;
 link.on("hello", (frame) => {
   store.merge({
     ...frame.status, config: frame.config, me: { client: frame.client, role: frame.role }, link: true,
-    message_list: frame.messages ?? [], mdi_history: frame.history ?? [], preferences_values: frame.preferences ?? {},
+    message_list: frame.messages ?? [], mdi_history: frame.history ?? [],
   });
+  keepOnServer(frame.preferences ?? {}, (values) => operator(store.values) && link.call("preferences.write", { values }).catch(() => {}));
   if (!built) build(frame.config);
   if (operator(store.values) && !store.values.control && !document.hidden && !frame.config.wizard) link.call("control.take").catch(() => {});
 });
@@ -65,6 +66,7 @@ function build(config) {
     mountRunbar(place("foot"), app);
     watchPrompts(app);
   }
+  if (config.confirm_exit) addEventListener("beforeunload", (event) => running(store.values) && event.preventDefault());
   app.panels.start();
 }
 

@@ -166,6 +166,20 @@ def test_the_feed_override_scales_a_feed_up_to_its_maximum(scale: float, speed: 
     assert m["motion.feed-upm"] == pytest.approx(speed * 60)
 
 
+@pytest.mark.parametrize(("units", "mm"), [(0, 25.4), (1, 25.4), (2, 1.0), (3, 10.0)])
+def test_feed_pins_show_the_programs_inches_and_millimetres(units: int, mm: float) -> None:
+    m = mill("coord")
+    m.send(C.SET_UNITS, scale=25.4)  # a machine in inches
+    m.send(C.FEED_SCALE, scale=0.5)
+    line(m, 90, vel=10.0, mode=units)
+    m.step(300)
+    assert m["motion.feed-upm"] == pytest.approx(10.0 * 0.5 * 60 * 25.4 / mm)
+    assert m["motion.feed-inches-per-minute"] == pytest.approx(300.0)
+    assert m["motion.feed-inches-per-second"] == pytest.approx(5.0)
+    assert m["motion.feed-mm-per-minute"] == pytest.approx(7620.0)
+    assert m["motion.feed-mm-per-second"] == pytest.approx(127.0)
+
+
 def test_the_status_shows_the_override_that_was_asked_for() -> None:
     m = mill("coord")
     m.send(C.FEED_SCALE, scale=3.0)

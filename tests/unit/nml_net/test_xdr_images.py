@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import random
-from array import array
 
+import numpy as np
 import pytest
 
 import nml.emc.emcmot  # noqa: F401
 from nml.codecs import xdr
+from nml.emc import EMC_STAT
 from nml.errors import NmlError
 from nml.message import Message, registry
 from nml.net import xdr_images
@@ -55,11 +56,21 @@ def test_what_is_no_image_is_refused(image: bytes) -> None:
         xdr_images.encode(bytearray(image), True)
 
 
-def test_bytes_are_gathered_from_their_places() -> None:
-    assert gather(b"abcd", array("i", [3, -1, 0]), b"xyz") == b"dya"
+def test_elements_are_gathered_in_runs() -> None:
+    runs = np.array([(1, 0, 5, 2), (4, 2, 0, 1), (8, 6, 8, 1)], dtype=np.int32)
+    image = bytes(range(16))
+    assert gather(image, runs, bytes(15)) == bytes([5, 6, 3, 2, 1, 0, *range(15, 7, -1), 0])
 
 
-@pytest.mark.parametrize(("index", "template"), [([0, 1], b"x"), ([4], b"x"), ([2**31 - 1], b"x")])
-def test_places_outside_are_refused(index: list[int], template: bytes) -> None:
-    with pytest.raises(ValueError, match=r"places for|of an image"):
-        gather(b"abcd", array("i", index), template)
+@pytest.mark.parametrize(
+    "run", [(4, 0, 13, 1), (1, 0, 0, 17), (8, 5, 0, 1), (1, -1, 0, 1), (4, 0, 0, -1), (2, 0, 0, 1)]
+)
+def test_runs_outside_are_refused(run: tuple[int, int, int, int]) -> None:
+    with pytest.raises(ValueError, match=r"leave an image|are known"):
+        gather(bytes(16), np.array([run], dtype=np.int32), bytes(12))
+
+
+def test_neighbours_of_one_kind_are_one_run() -> None:
+    runs, fixed = xdr_images._order(EMC_STAT, True)
+    assert len(fixed) == 3876
+    assert len(runs) < 300

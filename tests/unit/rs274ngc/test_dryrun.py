@@ -95,3 +95,11 @@ def test_a_wrong_block_of_mdi_is_refused_with_its_column():
     code, output = worker("--mdi", "G1 X5 FX")
     assert code == 1
     assert json.loads(output)["error"]["column"] > 0
+
+
+def test_a_waiting_worker_takes_its_arguments_from_its_input_and_ends_with_whoever_started_it():
+    command = [sys.executable, "-P", "-m", "rs274ngc.dryrun", "--wait"]
+    words = json.dumps(["--mdi", "G0 X5", "-i", str(INI)]) + "\n"
+    done = subprocess.run(command, input=words.encode(), capture_output=True, timeout=60, check=True)
+    assert json.loads(done.stdout)["end"][0] == 5.0
+    assert subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=60, check=True).stdout == b""

@@ -27,8 +27,6 @@ m3 s100
 g1 x2 u1
 g3 x3 y4 r.8
 g33.1 z1 k1
-g20 f5
-g1 x1
 m2
 """
 
@@ -189,5 +187,4 @@ def test_debians_module_tells_the_same(program, tmp_path):
         outputs.append(json.loads(done.stdout.splitlines()[-1]))
     theirs, ours = ([heard for heard in output[1] if heard[1] > 0] for output in outputs)
     assert outputs[1][0] == outputs[0][0]
-    assert [pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]] == []
     assert ours == theirs

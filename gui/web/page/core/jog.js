@@ -60,6 +60,11 @@ export class Jogger {
     return (direction * perMin) / 60;
   }
 
+  /** The chosen step, machine units or degrees; null: continuous. @param {boolean} linear @returns {number | null} */
+  increment(linear) {
+    return this.app.v[linear ? "increment_linear" : "increment_angular"] ?? null;
+  }
+
   /**
    * Begin a jog that lasts until `release(holder)`.
    * @param {string} holder @param {Target} target @param {number} velocity signed
@@ -142,12 +147,12 @@ export class Jogger {
 /**
  * Make a button jog: continuous while it is held, or one step at each press, as the operator chose.
  * @param {HTMLButtonElement} button @param {import("./app.js").App} app @param {string} holder
- * @param {() => {target: Target, velocity: number}} wanted asked at each press
+ * @param {() => {target: Target, velocity: number, increment: number | null}} wanted asked at each press
  */
 export function jogButton(button, app, holder, wanted) {
   const start = () => {
-    const { target, velocity } = wanted();
-    app.jogger.press(holder, target, velocity, app.v.jog_increment);
+    const { target, velocity, increment } = wanted();
+    app.jogger.press(holder, target, velocity, increment);
   };
   button.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 || button.disabled) return;

@@ -47,7 +47,7 @@ function keyboardSwitch(app) {
     const axis = key && config.axes.find((/** @type {any} */ one) => one.letter === key[0]);
     if (!axis) return;
     event.preventDefault();
-    if (!event.repeat) app.jogger.press(`key:${event.key}`, app.jogger.target(axis), app.jogger.velocity(axis.linear, key[1], event.shiftKey), app.v.jog_increment);
+    if (!event.repeat) app.jogger.press(`key:${event.key}`, app.jogger.target(axis), app.jogger.velocity(axis.linear, key[1], event.shiftKey), app.jogger.increment(axis.linear));
   });
   document.addEventListener("keyup", (event) => app.jogger.release(`key:${event.key}`));
   return button;

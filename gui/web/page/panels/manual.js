@@ -4,7 +4,7 @@ import { fill, h, select, setPressed, setText } from "../core/dom.js";
 import { _ } from "../core/i18n.js";
 import { icon } from "../core/icons.js";
 import { jogButton } from "../core/jog.js";
-import { confirm } from "../core/dialog.js";
+import { openDialog } from "../core/dialog.js";
 import { homingNow, whyNoControl, whyNoPower, whyNotHomed, whyNotManual } from "../core/machine.js";
 import { registerPanel } from "../core/panels.js";
 import { recall, remember } from "../core/prefs.js";
@@ -56,9 +56,20 @@ function homing(app) {
 }
 
 /** @param {App} app @param {number} joint @param {string} name */
-async function homeJoint(app, joint, name) {
-  if (app.v.homed[joint] && !(await confirm(_("Homing"), _("{name} is homed. Home it again?", { name }), _("Home")))) return;
-  app.act("home", { joint });
+function homeJoint(app, joint, name) {
+  if (!app.v.homed[joint]) {
+    app.act("home", { joint });
+    return;
+  }
+  const choose = (/** @type {string} */ method) => (/** @type {() => void} */ close) => {
+    close();
+    app.act(method, { joint });
+  };
+  openDialog(
+    _("Homing"),
+    [h("p", null, _("{name} is homed. Home it again?", { name }))],
+    [{ text: _("Cancel") }, { text: _("Forget its home"), kind: "danger", act: choose("unhome") }, { text: _("Home"), kind: "primary", submit: true, act: choose("home") }],
+  );
 }
 
 /** @param {App} app @param {any} config */
@@ -72,7 +83,7 @@ function jogging(app, config) {
   return h(
     "div",
     { class: "card jogging", role: "group", "aria-label": _("Jog") },
-    incrementButtons(app, config),
+    ...kindsOf(config).map((kind) => incrementButtons(app, config, kind)),
     ...pads,
     ...rows,
     ...free,
@@ -88,11 +99,18 @@ function padsOf(config) {
   return [MILL_PAD];
 }
 
-/** @param {App} app @param {any} config */
-function incrementButtons(app, config) {
-  const chosen = config.increments[recall("increment", 0)] ?? config.increments[0];
-  app.store.merge({ jog_increment: chosen.value });
-  const buttons = config.increments.map((/** @type {any} */ increment, /** @type {number} */ n) =>
+/** The kinds of axes that there are. @param {any} config @returns {("linear" | "angular")[]} */
+function kindsOf(config) {
+  const linear = config.axes.map((/** @type {any} */ axis) => axis.linear);
+  return [.../** @type {const} */ (linear.includes(true) ? ["linear"] : []), .../** @type {const} */ (linear.includes(false) ? ["angular"] : [])];
+}
+
+/** @param {App} app @param {any} config @param {"linear" | "angular"} kind */
+function incrementButtons(app, config, kind) {
+  const increments = kind === "linear" ? config.increments : config.angular_increments;
+  const chosen = increments[recall(`increment.${kind}`, 0)] ?? increments[0];
+  app.store.merge({ [`increment_${kind}`]: chosen.value });
+  const buttons = increments.map((/** @type {any} */ increment, /** @type {number} */ n) =>
     h(
       "button",
       {
@@ -100,15 +118,15 @@ function incrementButtons(app, config) {
         "aria-pressed": String(increment === chosen),
         "aria-label": increment.value === null ? _("Continuous, as long as the button is held") : null,
         onclick: () => {
-          app.store.merge({ jog_increment: increment.value });
-          remember("increment", n);
+          app.store.merge({ [`increment_${kind}`]: increment.value });
+          remember(`increment.${kind}`, n);
           buttons.forEach((/** @type {any} */ button, /** @type {number} */ k) => setPressed(button, k === n));
         },
       },
       increment.value === null ? _("Hold") : increment.text,
     ),
   );
-  return h("div", { class: "segments increments", role: "group", "aria-label": _("Jog increment") }, buttons);
+  return h("div", { class: "segments increments", role: "group", "aria-label": kind === "linear" ? _("Jog increment") : _("Turning increment") }, buttons);
 }
 
 /** @param {App} app @param {any} config @param {Record<string, string[]>} pad */
@@ -137,8 +155,7 @@ function jogKey(app, axis, direction, arrow, area) {
     style: area ? { gridArea: area } : {},
   });
   jogButton(button, app, `button:${axis.letter}${sign}`, () => ({
-    target: app.jogger.target(axis),
-    velocity: app.jogger.velocity(axis.linear, direction),
+    target: app.jogger.target(axis), velocity: app.jogger.velocity(axis.linear, direction), increment: app.jogger.increment(axis.linear),
   }));
   return button;
 }
@@ -150,7 +167,7 @@ function jointJog(app, config) {
   const key = (/** @type {number} */ direction) => {
     const button = app.button(direction < 0 ? "left" : "right", `J${direction < 0 ? "−" : "+"}`, () => {}, (v) => whyNotManual(v), { class: "jog" });
     jogButton(button, app, `joint:${direction}`, () => ({
-      target: { joint: joint.number }, velocity: app.jogger.velocity(joint.linear, direction),
+      target: { joint: joint.number }, velocity: app.jogger.velocity(joint.linear, direction), increment: app.jogger.increment(joint.linear),
     }));
     return button;
   };
@@ -159,11 +176,7 @@ function jointJog(app, config) {
 
 /** @param {App} app @param {any} config */
 function speedSliders(app, config) {
-  const kinds = [
-    ["linear", config.axes.some((/** @type {any} */ axis) => axis.linear)],
-    ["angular", config.axes.some((/** @type {any} */ axis) => !axis.linear)],
-  ];
-  return kinds.filter(([, wanted]) => wanted).map(([kind]) => speedSlider(app, kind, config.jog_speed[kind]));
+  return kindsOf(config).map((kind) => speedSlider(app, kind, config.jog_speed[kind]));
 }
 
 /** Jog speed on a logarithmic slider, because 10 and 10000 are equally useful. @param {App} app @param {any} kind @param {any} limits */
