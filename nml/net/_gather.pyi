@@ -1,5 +1,6 @@
 """Types of the compiled module ``_gather.pyx``."""
 
-from array import array
+import numpy as np
+from numpy.typing import NDArray
 
-def gather(image: bytes | bytearray | memoryview, index: array[int], template: bytes) -> bytes: ...
+def gather(image: bytes | bytearray | memoryview, runs: NDArray[np.int32], template: bytes) -> bytes: ...
