@@ -8,14 +8,17 @@ from hal.cell cimport hal_at as at, hal_pin
 from hal.components.declare import BIT, FLOAT, S32, U32, declare, param_rw, pin_in, pin_io, pin_out
 
 
+cdef double NOTHING = 1e-6  # closer to zero than this is neither positive nor negative
+
 cdef struct Abs:
     hal_pin in_, out, sign, is_positive, is_negative
 
 cdef void abs_(Abs* s, long period) noexcept nogil:
     cdef double value = at(s.in_).f
     at(s.out).f = fabs(value)
-    at(s.sign).b = at(s.is_negative).b = value < 0.0
-    at(s.is_positive).b = value > 0.0
+    at(s.sign).b = value < 0.0
+    at(s.is_negative).b = value < -NOTHING
+    at(s.is_positive).b = value > NOTHING
 
 cdef void abs_s32(Abs* s, long period) noexcept nogil:
     cdef int32_t value = at(s.in_).s
