@@ -1,7 +1,7 @@
 """Every INI file of LinuxCNC's samples under ``sim``: its HAL files load, or the message names the one thing missing.
 
-No machine is started: the pins of ``iocontrol`` and ``halui`` are made here, the realtime host is a process, and programs
-that need an X display are not on the PATH. ``test_sample_configurations.py`` starts whole machines.
+No machine is started: the pins of ``iocontrol`` and ``halui`` are made here, the realtime host is a process, and
+programs that need an X display are not on the PATH. ``test_sample_configurations.py`` starts whole machines.
 """
 
 from __future__ import annotations
