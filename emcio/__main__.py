@@ -62,7 +62,12 @@ def build(ini: IniFile, *, faults: bool = False, announces: bool = False) -> IoC
     cycle_s = ini.real("EMCIO", "CYCLE_TIME", DEFAULT_CYCLE_S, maximum=10.0)
     store = ToolStore(ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False))
     source = tool_source(ini)
-    for remark in source.load(store):
+    try:
+        remarks = source.load(store)
+    except PyemcError:
+        source.close()
+        raise
+    for remark in remarks:
         print(remark, file=sys.stderr)
     config = NmlConfig.load()
     channels = IoChannels(

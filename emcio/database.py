@@ -1,14 +1,16 @@
 """[EMCIO]DB_PROGRAM: a program of the user's that keeps the tools, asked and told over its standard input and output.
 
 Protocol v2.1 of LinuxCNC's manual, chapter 9.10: the program begins with a line ``v2.1``. ``g`` asks for all tools:
-lines in the format of a tool table, then ``FINI``. ``p LINE`` tells new values, ``l Tn P0`` a loaded spindle, ``u Tn
-Pm`` an unloaded one; each is answered by a line, and one with NAK is a complaint. Whatever is said after the start is
-said in a thread of its own: a program that takes its time never holds up the E-stop chain.
+lines in the format of a tool table, then one with FINI. ``p LINE`` tells new values, ``l Tn P0`` a loaded spindle,
+``u Tn Pm`` an unloaded one; each is answered by a line, and one with NAK is a complaint. Whatever is said after
+the start is said in a thread of its own: a program that takes its time never holds up the E-stop chain.
 """
 
 from __future__ import annotations
 
+import ctypes
 import queue
+import signal
 import subprocess
 import threading
 from pathlib import Path
@@ -18,8 +20,14 @@ from emcio.tooltable import Tool, format_line, parse_line
 from nml.errors import ConfigError
 
 VERSION = "v2.1"
-ALL = "g"
+ALL, END, REFUSAL = "g", "FINI", "NAK"
+PR_SET_PDEATHSIG = 1  # of <linux/prctl.h>
 ANSWER_S = 5.0  # host time that the program has for an answer
+
+
+def _end_with_parent() -> None:
+    """In the new process: SIGTERM when io dies, for a program may not notice that nobody asks any more."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 class DatabaseTools:
@@ -28,7 +36,13 @@ class DatabaseTools:
     def __init__(self, command: list[str], folder: Path) -> None:
         try:
             self._process = subprocess.Popen(
-                command, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+                command,
+                cwd=folder,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                bufsize=1,
+                preexec_fn=_end_with_parent,
             )
         except OSError as error:
             raise ConfigError(f"[EMCIO]DB_PROGRAM = {command[0]}: {error.strerror}") from None
@@ -70,7 +84,9 @@ class DatabaseTools:
         tools: list[Tool] = []
         with self._talk:
             self._say(ALL)
-            while (line := self._line()) != "FINI":
+            while not (line := self._line()).startswith(END):
+                if line.startswith(REFUSAL):
+                    raise ConfigError(f"the tool data base refused to list its tools: {line}")
                 try:
                     tool = parse_line(line)
                 except ConfigError as error:
@@ -128,7 +144,7 @@ class DatabaseTools:
         with self._talk:
             self._say(order)
             answer = self._line()
-        if "NAK" in answer:
+        if REFUSAL in answer:
             self._failure = f"the tool data base refused {order!r}: {answer}"
 
     def _say(self, text: str) -> None:

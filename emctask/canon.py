@@ -100,7 +100,7 @@ class TaskCanon(WorldModel):
         number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
             SET_LINE, 0, 0, 0, number, x, y, z, a, b, c, u, v, w, *NO_CIRCLE, self.indexer, kind,
-            vel, ini_maxvel, acc, 0.0, self.term_cond, 0, self.tolerance,
+            vel, ini_maxvel, acc, 0.0, self.term_cond, self.coords.units, self.tolerance,
         )  # fmt: skip
         self.queue.append((op.move, packed, line, block))
 
@@ -109,7 +109,7 @@ class TaskCanon(WorldModel):
         number = self.places.new_id(Place(line, block))
         packed = MOVE.pack(
             SET_CIRCLE, 0, 0, 0, number, x, y, z, a, b, c, u, v, w, cx, cy, cz, nx, ny, nz, turn, ARC,
-            vel, ini_maxvel, acc, 0.0, self.term_cond, 0, self.tolerance,
+            vel, ini_maxvel, acc, 0.0, self.term_cond, self.coords.units, self.tolerance,
         )  # fmt: skip
         self.queue.append((op.move, packed, line, block))
 

@@ -136,6 +136,10 @@ class Plan:
         """Text of the program's line that was read last; it stays when the program is over."""
         return self.interp.block_text.strip() if self.source is Source.PROGRAM else self._last_line
 
+    def forget_line(self) -> None:
+        """The program's line is not shown any more."""
+        self._last_line = ""
+
     @property
     def typed(self) -> bool:
         """Is it an MDI line that is under way?"""
@@ -268,7 +272,7 @@ class Plan:
             standing.write_offsets(self.interp, self._restore.offsets)
         self.canon.forget()
         self.finish()
-        self._last_line = ""
+        self.forget_line()
         self.must_synch = True
 
     def block_in_execution(self) -> Block | None:

@@ -109,6 +109,9 @@ class Runner:
         if self._task.plan.dry_run is not None or not self._task.plan.active:
             self._give_up_start(text)
             return
+        if self._task.plan.typed and not self._task.canon.queue and self._task.sequencer.idle:
+            self._reject_line(text)
+            return
         self._task.operator.error(text)
         self._task.plan.stop_reading()
         self._pending_error = text
@@ -118,6 +121,17 @@ class Runner:
         task = self._task
         task.plan.abort(task.plan.block_in_execution())
         self.stepping = False
+        task.fail(text)
+        self.serial = 0
+        self._set(Interp.IDLE)
+
+    def _reject_line(self, text: str) -> None:
+        """An MDI line that is wrong before it does anything: nothing changes, and the lines that wait behind it go."""
+        task = self._task
+        task.mdi_queue.clear()
+        task.mdi_text = ""
+        task.plan.finish()
+        task.plan.must_synch = True
         task.fail(text)
         self.serial = 0
         self._set(Interp.IDLE)

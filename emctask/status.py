@@ -69,6 +69,10 @@ class StatusWriter:
             self._written[:] = image(stat)
             self._last = now
 
+    def forget_line(self) -> None:
+        """The line of the last move is not shown any more."""
+        self.message.task.motionLine = 0
+
     def _mode_when_on(self, task: Task) -> int:
         """How motion will move once the machine is on."""
         if task.mode is not Mode.MANUAL:

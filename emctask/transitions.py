@@ -146,6 +146,8 @@ def request_mode(task: Task, wanted: Mode) -> None:
         task.motion.send(MotCommand.TELEOP if task.motion.all_homed else MotCommand.FREE)
     task.mode = wanted
     task.plan.must_synch = True
+    task.plan.forget_line()
+    task.status.forget_line()
     if task.state is State.ON:
         complaint = f"motion does not go into {wanted.name.lower()} mode"
         task.expect(lambda: motion_suits(task, wanted) or task.motion.refused_last, complaint)

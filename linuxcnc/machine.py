@@ -8,6 +8,7 @@ import shlex
 import signal
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import linuxcnc
 from hal._shm import USER
@@ -189,6 +190,7 @@ class Machine:
         for number in END_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
         records = self._instance.recorded()
+        records += self._programs_of_hal_files(records)
         problem = takedown.bring_to_rest(records, self._nml_file)
         if problem:
             self.report(problem)
@@ -201,6 +203,12 @@ class Machine:
         self._guard.dismiss()
         self._instance.release()
 
+
+    def _programs_of_hal_files(self, known: list[ProcessRecord]) -> list[ProcessRecord]:
+        """What HAL files started and what is no component, or not yet one, when the end comes."""
+        pids = map(int, Path(f"/proc/self/task/{os.getpid()}/children").read_text().split())
+        others = set(pids) - {record.pid for record in known} - {self._guard.pid}
+        return [record for pid in others if (record := ProcessRecord.of(pid, "program")).alive]
 
     def _shut_down_hal(self) -> None:
         """[HAL]SHUTDOWN, where the start came as far as the HAL files; a mistake in it is only reported."""

@@ -66,3 +66,13 @@ def test_a_start_that_fails_in_a_hal_file_names_what_else_is_wrong(tmp_path):
     assert reason.startswith("test.hal:1: ") or "test.hal:1: " in reason
     assert "[JOINT_0]HOME = 9999 is outside the limits" in finding
     wait_until(lambda: traces() == [], "everything is gone")
+
+
+def test_a_program_that_a_hal_file_waits_for_in_vain_ends_with_the_start(tmp_path):
+    script(tmp_path / "never", "#!/bin/sh\ntouch told\nexec sleep 1000\n")
+    run = Run(copy_mill(tmp_path, hal="loadusr -W ./never\n"), speed=10.0)
+    try:
+        wait_until((tmp_path / "told").exists, "the program")
+    finally:
+        assert run.stop() == 143
+    assert traces() == []

@@ -70,3 +70,19 @@ def test_teleop_is_manual_mode(desk):
 def test_an_idle_machine_is_never_seen_busy(desk):
     desk.ready(linuxcnc.MODE_MANUAL)
     assert {desk.look().state for _ in range(30) if desk.stat.wait(1.0)} == {linuxcnc.RCS_DONE}
+
+
+def test_a_line_that_is_wrong_at_once_changes_nothing_but_drops_those_behind_it(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    for line in ("M8", "M3 S100", "G43 H1", "G55"):
+        assert desk.mdi(line) == DONE
+    before = (desk.stat.flood, desk.stat.spindle[0]["speed"], desk.stat.gcodes[3:], desk.stat.mcodes[2:])
+    desk.command.mdi("G4 P0.2")
+    desk.command.mdi("bad")
+    desk.command.mdi("G53 G0 X50")
+    desk.until(lambda s: desk.texts and s.queued_mdi_commands == 0 and s.interp_state == 1, "the refusal")
+    assert desk.command.wait_complete(10.0) == linuxcnc.RCS_ERROR
+    status = desk.look()
+    assert (status.flood, status.spindle[0]["speed"], status.gcodes[3:], status.mcodes[2:]) == before
+    assert status.position[0] == 0.0
+    assert desk.mdi("G53 G0 X1") == DONE

@@ -18,7 +18,7 @@ PROGRAM = """
     for line in sys.stdin:
         print(line.strip(), file=log, flush=True)
         if line == "g\\n":
-            print("T1 P17 Z1.5 D3 ;first", "T110 P113 D6", "rubbish", "FINI", sep="\\n", flush=True)
+            print("T1 P17 Z1.5 D3 ;first", "T110 P113 D6", "rubbish", "FINI (all of them)", sep="\\n", flush=True)
         elif line.startswith("u"):
             print("NAK no such tool", flush=True)
         else:
@@ -79,6 +79,14 @@ def test_changes_are_told_in_order_and_a_refusal_is_a_complaint(tools, tmp_path)
     assert "NAK no such tool" in tools.failure()
     assert tools.failure() is None
     assert not tools.busy or tools._orders.qsize() == 0
+
+
+def test_a_program_that_will_not_list_its_tools_is_an_error(tmp_path):
+    (tmp_path / "db.py").write_text("print('v2.1', flush=True); input(); print('NAK no', flush=True); input()")
+    source = DatabaseTools([sys.executable, "db.py"], tmp_path)
+    with pytest.raises(ConfigError, match="refused to list its tools: NAK no"):
+        source.load(ToolStore(random=False))
+    source.close()
 
 
 def test_another_version_is_refused(tmp_path):
