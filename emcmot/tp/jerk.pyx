@@ -31,6 +31,7 @@ cdef enum Verdict:
     TOO_HARD = 2                 # braking: it cannot be taken back in time
 
 cdef double NO_WAY = 1e-12       # u
+cdef double STANDING = 0.1    # jerk dt^2: a held machine that is no faster stands
 cdef double LANDING = 0.2     # jerk dt^3 from the end, the rest of the way is gone in one period
 cdef double ALIKE = 0.85         # ratio of limits from which two spans may be one stretch
 cdef double SHORT = 0.04         # of the way that braking takes: shorter spans are taken together anyway
@@ -252,7 +253,7 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
     a = _choose(tp, v, target)
     way = dt * (v + (2.0 * tp.a + a) * dt / 6.0)
     v += 0.5 * (tp.a + a) * dt
-    if target == 0.0 and v <= least and fabs(a) * dt <= 2.0 * least:
+    if target == 0.0 and v <= STANDING * least and fabs(a) * dt <= STANDING * least:
         tp.w = tp.a = 0.0
         return
     tp.a = a if v > 0.0 else fmax(0.0, a)
