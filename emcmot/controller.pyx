@@ -48,6 +48,8 @@ from emcmot.layout import same_size
 
 same_size(__name__, "Motion", sizeof(Motion))
 
+cdef double* MM_OF_UNITS = [1.0, 25.4, 1.0, 10.0]   # machine units (not used), inch, mm, cm
+
 cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
 cdef int TYPE_ARC = 3
@@ -260,6 +262,12 @@ cdef void write_queued_outputs(Motion* m) noexcept nogil:
                 m.analog_out[n] = io.aout_value[n]
 
 
+cdef double mm_per_program_unit(Motion* m) noexcept nogil:
+    """Of the running move: F words of its program are these units a minute."""
+    cdef int units = m.units_of_id[m.tp_status.id & (LINES - 1)]
+    return m.mm_per_unit if units == 0 else MM_OF_UNITS[units]
+
+
 cdef void write_pins(Motion* m) noexcept nogil:
     """The machine's output pins that are not written where they are worked out."""
     m.motion_enabled_out = m.enabled
@@ -271,10 +279,10 @@ cdef void write_pins(Motion* m) noexcept nogil:
     m.program_line = m.line_of_id[m.tp_status.id & (LINES - 1)] if m.tp_status.id else 0
     m.tp_reverse_out = m.tp_status.reversing
     m.paused = m.tp_status.paused
-    m.feed_upm = 0.0
+    m.feed_mmpm = 0.0
     if m.motion_type_out == TYPE_FEED or m.motion_type_out == TYPE_ARC:
-        m.feed_upm = m.requested_vel * m.net_feed_scale * 60.0
-    m.feed_mmpm = m.feed_upm * m.mm_per_unit
+        m.feed_mmpm = m.requested_vel * m.net_feed_scale * 60.0 * m.mm_per_unit
+    m.feed_upm = m.feed_mmpm / mm_per_program_unit(m)
     m.feed_mmps = m.feed_mmpm / 60.0
     m.feed_ipm = m.feed_mmpm / 25.4
     m.feed_ips = m.feed_ipm / 60.0

@@ -4,6 +4,7 @@ The command table has checked that motion is enabled and coordinated and that th
 checked here against the limits of axes and joints before anything is queued.
 """
 
+from libc.stdint cimport int8_t
 from libc.stdio cimport snprintf
 from libc.string cimport memset
 
@@ -72,7 +73,7 @@ cdef const double* queue_end(Motion* m) noexcept nogil:
     return &m.tp_status.pos[0] if m.tp_status.done else &m.queue_end[0]
 
 
-cdef int queue(Motion* m, const TpSegment* s, const char* what, int line) noexcept nogil:
+cdef int queue(Motion* m, const TpSegment* s, const char* what, const EMCMOT_COMMAND* c) noexcept nogil:
     """Hand the segment, and the outputs that wait for a move, to the planner."""
     cdef int n
     cdef int result = tp_add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
@@ -83,7 +84,8 @@ cdef int queue(Motion* m, const TpSegment* s, const char* what, int line) noexce
         snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: bad geometry or speed", what, <long>s.id)
         return MotCommandStatus_INVALID_PARAMS
     m.tp_status.done = 0
-    m.line_of_id[s.id & (LINES - 1)] = line
+    m.line_of_id[s.id & (LINES - 1)] = c.line
+    m.units_of_id[s.id & (LINES - 1)] = <int8_t>min(max(c.mode, 0), 3)
     if s.kind != TP_TAP:
         for n in range(MAX_AXES):
             m.queue_end[n] = s.end[n]
@@ -101,7 +103,7 @@ cdef int set_line(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     begin_segment(m, c, &s)
     if check_end_point(m, b"Linear", c.id, s.end) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    return queue(m, &s, b"linear", c.line)
+    return queue(m, &s, b"linear", c)
 
 
 cdef int set_circle(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
@@ -117,7 +119,7 @@ cdef int set_circle(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     arc_box(queue_end(m), &s, box_low, box_high)
     if check_end_point(m, b"Circular", c.id, s.end) != 0 or check_box(m, b"Circular", c.id, box_low, box_high) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    return queue(m, &s, b"circular", c.line)
+    return queue(m, &s, b"circular", c)
 
 
 cdef int probe(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
@@ -130,7 +132,7 @@ cdef int probe(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     s.wait_spindles = 0
     if check_end_point(m, b"Probe", c.id, s.end) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    result = queue(m, &s, b"probe", c.line)
+    result = queue(m, &s, b"probe", c)
     if result == MotCommandStatus_OK:
         m.probing = PROBE_QUEUED
         m.probe_type = c.probe_type
@@ -150,7 +152,7 @@ cdef int rigid_tap(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     s.retract_scale = c.scale if c.scale > 0.0 else 1.0
     if check_end_point(m, b"Rigid tap", c.id, s.end) != 0:
         return MotCommandStatus_INVALID_PARAMS
-    return queue(m, &s, b"rigid tap", c.line)
+    return queue(m, &s, b"rigid tap", c)
 
 
 cdef int clear_probe_flags(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:

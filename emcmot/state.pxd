@@ -5,7 +5,7 @@ from and to HAL cells, and the stepped simulator reads and writes them by name. 
 messages. Bit-like members are 0 or 1.
 """
 
-from libc.stdint cimport int32_t, int64_t
+from libc.stdint cimport int8_t, int32_t, int64_t
 
 from emcmot._messages cimport EMCMOT_ERROR, EMCMOT_STATUS, MAX_AIO, MAX_AXES, MAX_DIO, MAX_JOINTS, MAX_SPINDLES
 from emcmot.free_planner cimport FreePlanner
@@ -283,6 +283,7 @@ ctypedef struct Motion:
     int index_spindle        # whose index pulse was asked for, -1: none
     int wait_spindles        # mask for the next feed move
     int32_t line_of_id[LINES]
+    int8_t units_of_id[LINES]   # of the program: EMCMOT_COMMAND.mode of a move
     double queue_end[MAX_AXES]  # end point of the move queued last
     int last_move_type       # motion type of the move queued last
     int last_move_synchronised

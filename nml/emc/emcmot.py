@@ -181,7 +181,10 @@ class EMCMOT_COMMAND(Command, type_id=3001):
     acc = double(unit="lu/s^2", doc="largest path acceleration")
     jerk = double(unit="lu/s^3", doc="largest path jerk; 0: none")
     termCond = integer(doc="TermCond, for this move and the following ones")
-    mode = integer(doc="on or off of an enable command; joint jog (1) or axis jog (0) of a jog command; planner type")
+    mode = integer(
+        doc="on or off of an enable command; joint jog (1) or axis jog (0) of a jog command; planner type; "
+        "of a move: the program's units, 1 inch, 2 mm, 3 cm, 0 machine units, for the pin motion.feed-upm"
+    )
     tolerance = double(unit="lu", doc="largest path deviation (G64 P)")
     spindlesync = double(unit="lu/rev", doc="SET_SPINDLESYNC")
     scale = double(doc="override factor, or scale of a RIGID_TAP retract")
