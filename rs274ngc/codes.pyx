@@ -95,19 +95,19 @@ g(71.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, after the first p
 g(72, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X", check_lathe)
 g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets", check_lathe)
 g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket", check_lathe)
-g(73, 1, "LQR", canned_cycle, "Drilling cycle with chip breaking", NULL, AXES_NEEDED)
-g(74, 1, "LPR$", canned_cycle, "Left-hand tapping cycle", NULL, AXES_NEEDED)
+g(73, 1, "LQR", canned_cycle, "Drilling cycle with chip breaking", NULL, AXES_NEEDED | NO_ROTARY)
+g(74, 1, "LPR$", canned_cycle, "Left-hand tapping cycle", NULL, AXES_NEEDED | NO_ROTARY)
 g(76, 1, "EHIJKLPQR$", threading_cycle, "Threading cycle", check_g76, AXES_NEEDED)
 g(80, 1, "", cancel_motion, "Cancel the motion mode")
-g(81, 1, "LR", canned_cycle, "Drilling cycle", NULL, AXES_NEEDED)
-g(82, 1, "LPR", canned_cycle, "Drilling cycle with dwell", NULL, AXES_NEEDED)
-g(83, 1, "LQR", canned_cycle, "Peck drilling cycle", NULL, AXES_NEEDED)
-g(84, 1, "LPR$", canned_cycle, "Right-hand tapping cycle", NULL, AXES_NEEDED)
-g(85, 1, "LR", canned_cycle, "Boring cycle, feed out", NULL, AXES_NEEDED)
-g(86, 1, "LPR", canned_cycle, "Boring cycle, spindle stop, rapid out", NULL, AXES_NEEDED)
-g(87, 1, "IJKLR", canned_cycle, "Back-boring cycle", NULL, AXES_NEEDED)
-g(88, 1, "LPR", canned_cycle, "Boring cycle, spindle stop, out by hand", NULL, AXES_NEEDED)
-g(89, 1, "LPR", canned_cycle, "Boring cycle, dwell, feed out", NULL, AXES_NEEDED)
+g(81, 1, "LR", canned_cycle, "Drilling cycle", NULL, AXES_NEEDED | NO_ROTARY)
+g(82, 1, "LPR", canned_cycle, "Drilling cycle with dwell", NULL, AXES_NEEDED | NO_ROTARY)
+g(83, 1, "LQR", canned_cycle, "Peck drilling cycle", NULL, AXES_NEEDED | NO_ROTARY)
+g(84, 1, "LPR$", canned_cycle, "Right-hand tapping cycle", NULL, AXES_NEEDED | NO_ROTARY)
+g(85, 1, "LR", canned_cycle, "Boring cycle, feed out", NULL, AXES_NEEDED | NO_ROTARY)
+g(86, 1, "LPR", canned_cycle, "Boring cycle, spindle stop, rapid out", NULL, AXES_NEEDED | NO_ROTARY)
+g(87, 1, "IJKLR", canned_cycle, "Back-boring cycle", NULL, AXES_NEEDED | NO_ROTARY)
+g(88, 1, "LPR", canned_cycle, "Boring cycle, spindle stop, out by hand", NULL, AXES_NEEDED | NO_ROTARY)
+g(89, 1, "LPR", canned_cycle, "Boring cycle, dwell, feed out", NULL, AXES_NEEDED | NO_ROTARY)
 # --- The other modal groups
 g(17, 2, "", set_plane, "XY plane")
 g(18, 2, "", set_plane, "XZ plane")
@@ -243,6 +243,13 @@ cdef int enhance(State s, Block* b) except -1:
     return 0
 
 
+cdef int refuse_rotary(State s, const Block* b) except -1:
+    for axis, article in ((W_A, "an a"), (W_B, "a b"), (W_C, "a c")):
+        if has(b, axis):
+            return fail_word(s, f"Cannot put {article} in canned cycle", axis)
+    return 0
+
+
 cdef bint any_remapped(State s, const Block* b):
     """Whether a G or M code of the line is remapped."""
     cdef int group
@@ -277,6 +284,8 @@ cdef int check(State s, Block* b) except -1:
         for group in range(M_GROUPS):
             if b.m[group] >= 0:
                 allowed |= m_code[b.m[group]].words
+    if b.motion >= 0 and b.words & M_ABC and g_code[b.motion].flags & NO_ROTARY:
+        return refuse_rotary(s, b)
     if b.words & CHECKED & ~allowed:
         for word, message in UNUSED:
             if has(b, word) and not (allowed >> <int>word) & 1:

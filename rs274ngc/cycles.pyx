@@ -206,9 +206,6 @@ cdef int check_words(State s, Block* b, Hole* h) except -1:
     """The axis words that a cycle may have in the active plane."""
     cdef int axis
     cdef str plane = PLANE_NAMES[s.plane]
-    for axis, article in ((3, "an a"), (4, "a b"), (5, "a c")):
-        if has(b, axis_words[axis]):
-            return fail_word(s, f"Cannot put {article} in canned cycle", axis_words[axis])
     for axis in (0, 1, 2) if s.plane > 3 else (6, 7, 8):
         if has(b, axis_words[axis]):
             return fail_word(s, f"Cannot put {'an' if axis == 0 else 'a'} {AXES[axis]} in a canned cycle in the {plane} plane",

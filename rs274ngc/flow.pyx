@@ -335,8 +335,8 @@ cdef class Flow:
                     s.params[k] = arguments[k - 1]
                 elif not s.features & FEATURE_OWORD_N_ARGS:
                     s.params[k] = 0.0
-            s.return_value = 0.0
-            s.value_returned = False
+        s.return_value = 0.0
+        s.value_returned = False
         s.frames.append(frame)
         s.frame = frame
 

@@ -17,7 +17,7 @@ cdef enum:
     NO_FLAGS = 0
     AXES_TAKEN = 1          # group 0: the axis words belong to it, not to the motion
     AXES_NEEDED = 2         # motion: must have an axis word
-    QUEUE_BUSTER = 4        # the next line needs the machine to stand still
+    NO_ROTARY = 4           # motion: must not have an A, B or C word
 
     # The order of execution: what comes first on a line happens first
     STEP_NONE = 0

@@ -95,6 +95,7 @@ cdef int set_feed_mode(State s, Block* b, int code) except -1:
     """G93, G94, G95"""
     cdef int spindle = read_spindle(s, b, "Invalid spindle ($) number in Spindle Feed command")
     s.feed_mode = code
+    s.active_spindle = spindle
     if code == 930:
         s.canon.comment("interpreter: feed mode set to inverse time")
         s.canon.set_feed_mode(0, 0)
@@ -104,7 +105,6 @@ cdef int set_feed_mode(State s, Block* b, int code) except -1:
         s.canon.set_feed_rate(0.0)
         s.feed = 0.0
     else:
-        s.active_spindle = spindle
         s.canon.comment("interpreter: feed mode set to units per revolution")
         s.canon.set_feed_mode(spindle, 1)
         s.canon.set_feed_rate(0.0)

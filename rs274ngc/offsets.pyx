@@ -10,7 +10,7 @@ from libc.string cimport memcpy, memset
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_SIDE_OFF, CANON_UNITS_INCHES
-from rs274ngc.modal cimport QUEUE_BUSTER
+
 from rs274ngc.path cimport axis_words, machine_to_program
 from rs274ngc.state cimport WAIT_TOOL, State, fail, fail_word, remember_position
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters

@@ -29,7 +29,7 @@ ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
     ("_units_per_minute", "1 with G94", lambda s: s.feed_mode == 940),
     ("_units_per_rev", "1 with G95", lambda s: s.feed_mode == 950),
     ("_coord_system", "coordinate system code times 10", lambda s: COORD_SYSTEM_CODES[s.origin_index]),
-    ("_tool_offset", "1 with G43", lambda s: s.g43_active),
+    ("_tool_offset", "1 while a tool offset is in force", lambda s: any(s.tool_offset)),
     ("_retract_r_plane", "1 with G99", lambda s: not s.retract_old_z),
     ("_retract_old_z", "1 with G98", lambda s: s.retract_old_z),
     ("_spindle_rpm_mode", "1 with G97", lambda s: s.surface_speed_mode(0) == 0.0),

@@ -115,7 +115,7 @@ cdef int read_number(State s, int* at, double* out) except -1:
 
 cdef str number_text(State s, int start):
     cdef int end = start
-    while s.text[end] and s.text[end] in b"0123456789.":
+    while s.text[end] and s.text[end] in b"0123456789." or (end == start and s.text[end] in b"+-"):
         end += 1
     return s.text[start:end].decode("latin-1")
 

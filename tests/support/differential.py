@@ -145,6 +145,8 @@ def explained(left: str, right: str, one: Outcome, other: Outcome, lathe: bool =
     """The name of a known difference, empty for an unknown one; ``lathe``: the program has a lathe cycle."""
     if lathe and (nearly(left, right) or "G7X error" in one.refusal[0] or left.startswith("Oops")):
         return "a corner of a lathe profile"
+    if one.calls == other.calls and one.refusal[1] == other.refusal[1] != "":
+        return "another error of the same line"
     left, right = "\n".join((left, *one.refusal)), "\n".join((right, *other.refusal))
     for name, their_line, our_line in KNOWN:
         if their_line.search(left) and our_line.search(right):

@@ -196,7 +196,7 @@ class Generator:
         ]
 
     def lathe(self) -> list[str]:
-        """A profile of lines, arcs, fillets and chamfers, roughed and finished: outside or inside, in any direction."""
+        """A profile of lines and arcs, roughed and finished: outside or inside, in any direction."""
         n = self.label()
         z, x = 0.0, self.random.choice((4.0, 20.0))
         inside = x > 10.0
@@ -206,21 +206,20 @@ class Generator:
             dz = round(self.random.uniform(1.5, 4), 2)
             dx = round(self.random.uniform(-1.2, 2.5) * (-1 if inside else 1), 2)
             z, x = round(z + forwards * dz, 3), round(x + dx, 3)
-            corner = self.random.choice(("", "", "", " a.2", " c.3"))
             if self.random.random() < 0.2 and abs(dx) > 0.1:
                 sign = self.random.choice("23")
                 centre = f"i{dx} k0" if self.random.random() < 0.5 else f"i0 k{forwards * abs(dx)}"
                 z = round(z - forwards * dz + forwards * abs(dx), 3)
                 lines.append(f"g{sign} x{x} z{z} {centre}")
             else:
-                lines.append(f"g1 x{x} z{z}{corner}")
+                lines.append(f"g1 x{x} z{z}")
         start = f"x{8 if inside else 30} z{-2 * forwards}"
         rough = self.random.choice(("g71", "g71", "g71.2", "g72" if not inside else "g71"))
         return [
             "g18 g90 g8 g94 f100 m3 s100", f"g0 {start}",
             f"o{n} sub", *lines, f"o{n} endsub",
-            f"{rough} q{n} {start} d{self.random.choice((0, 0, 0.1))} i{self.random.uniform(0.7, 3):.2f} r.2",
-            f"g70 q{n} {start} d{self.random.choice((0, 0.1))} e0 p{self.random.randint(1, 2)}",
+            f"{rough} q{n} {start} d0 i{self.random.uniform(0.7, 3):.2f} r.2",
+            f"g70 q{n} {start} d0 p{self.random.randint(1, 2)}",
             "g80 g17",
         ]  # fmt: skip
 
