@@ -28,6 +28,7 @@ RADIUS = 100.0  # mm
 LEAD = 0.1  # share of the run at either end that does not count: the machine speeds up, the file ends
 
 DISPLAY = """\
+#!{python}
 import json, os, sys, time
 import linuxcnc
 folder = os.path.dirname(os.path.abspath(__file__))
@@ -76,12 +77,13 @@ def run(blocks: int, feed: float) -> list[tuple[float, int, float, int]]:
     with tempfile.TemporaryDirectory(prefix="pyemc-blocks-") as name:
         folder = Path(name)
         display = folder / "display.py"
-        ini = machine.write(folder, f"{sys.executable} {display}")
+        ini = machine.write(folder, str(display))
         text = ini.read_text()
         for key in ("LINEAR_VELOCITY", "VELOCITY"):
             text = text.replace(f"MAX_{key} = 100", f"MAX_{key} = 400")
         ini.write_text(text.replace("ACCELERATION = 500", "ACCELERATION = 20000"))
-        display.write_text(DISPLAY)
+        display.write_text(DISPLAY.replace("{python}", sys.executable))
+        display.chmod(0o755)
         (folder / "blocks.ngc").write_text(program(blocks, feed))
         environment = os.environ | {
             "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",

@@ -18,16 +18,17 @@ OUT = ROOT / "docs" / "pictures"
 DT = 0.001
 
 
-def planner(acceleration: float = 500.0) -> Planner:
+def planner(acceleration: float = 500.0, jerk: float = 0.0) -> Planner:
     made = Planner(DT, 4000)
     for axis in range(3):
-        made.set_limits(axis, 100.0, acceleration)
+        made.set_limits(axis, 100.0, acceleration, jerk)
+    made.limit_jerk(jerk > 0.0)
     return made
 
 
-def cut(points, tolerance: float, feed: float = 100.0) -> np.ndarray:
+def cut(points, tolerance: float, feed: float = 100.0, jerk: float = 0.0) -> np.ndarray:
     """Positions of a polyline."""
-    made = planner()
+    made = planner(jerk=jerk)
     for number, point in enumerate(points, 1):
         made.add_line(point, feed, tolerance=tolerance, id=number)
     return made.run_to_end()
@@ -84,9 +85,28 @@ def look_ahead() -> Figure:
     return figure
 
 
+def jerk() -> Figure:
+    """One corner without and with jerk limits: speed, acceleration and jerk of both axes."""
+    figure = Figure(figsize=(11, 6), layout="constrained")
+    rows = figure.subplots(3, 2, sharex="col")
+    for column, (limit, title) in enumerate(((0.0, "PLANNER_TYPE = 0"), (10_000.0, "PLANNER_TYPE = 1, 10,000 mm/s³"))):
+        q = cut([(10, 0, 0), (10, 10, 0)], 0.1, jerk=limit)
+        q = np.vstack([np.zeros((3, 9)), q, q[-1:], q[-1:], q[-1:]])
+        rows[0, column].set_title(title)
+        for row in range(3):
+            values = np.diff(q[:, :2], row + 1, axis=0) / DT ** (row + 1)
+            rows[row, column].plot(np.arange(len(values)) * DT, values, label=["x", "y"], linewidth=0.9)
+            rows[row, column].grid(alpha=0.3)
+        rows[2, column].set(xlabel="time, s", ylim=(-12_000, 12_000))
+    for row, name in enumerate(("speed, mm/s", "acceleration, mm/s²", "jerk, mm/s³")):
+        rows[row, 0].set_ylabel(name)
+    rows[0, 0].legend()
+    return figure
+
+
 def main() -> None:
     OUT.mkdir(exist_ok=True)
-    for draw in (corner, short_moves, look_ahead):
+    for draw in (corner, short_moves, look_ahead, jerk):
         draw().savefig(OUT / f"planner_{draw.__name__}.png", dpi=80)
 
 
