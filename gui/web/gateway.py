@@ -8,6 +8,7 @@ the owner of the machine has given this program an operator's token.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import math
 from collections.abc import Awaitable, Callable
@@ -23,6 +24,7 @@ from gui.web.machine import Machine
 from linuxcnc._connection import error, open_channel
 from nml.channel import Channel
 from nml.codecs import packed
+from nml.emc import EMC_JOG_CONT, EMC_JOG_STOP
 from nml.errors import NmlError
 from nml.message import Command, Message, registry
 
@@ -101,6 +103,7 @@ class Connection:
         self._subscriptions: dict[str, asyncio.Task[None]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._binary = socket.ws_protocol == MSGPACK
+        self._jogs: set[tuple[int, int]] = set()  # continuous ones: axis or joint, and which of the two
 
     async def send(self, frame: dict[str, Any]) -> None:
         if self._binary:
@@ -117,6 +120,7 @@ class Connection:
         finally:
             for task in (*self._subscriptions.values(), *self._tasks):
                 task.cancel()
+            self._stop_jogs()
             self._commands.close()
 
     async def _obey(self, data: str | bytes) -> None:
@@ -142,11 +146,24 @@ class Connection:
         if self._role is not Role.OPERATOR:
             raise Wrong("readers may look, not command")
         message = command_message(frame["command"], frame.get("fields", {}))
+        self._note_jog(message)
         serial = await asyncio.to_thread(self._commands.write, message)
         await self.send({"id": frame.get("id"), "serial": serial})
         task = asyncio.create_task(self._follow(frame.get("id"), serial))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def _note_jog(self, message: Command) -> None:
+        """Remember what would move on if this client went away."""
+        if isinstance(message, (EMC_JOG_CONT, EMC_JOG_STOP)):
+            jog = (message.joint_or_axis, message.jjogmode)
+            (self._jogs.add if isinstance(message, EMC_JOG_CONT) else self._jogs.discard)(jog)
+
+    def _stop_jogs(self) -> None:
+        """The client has gone: what it has set going stops."""
+        for which, mode in self._jogs:
+            with contextlib.suppress(NmlError):
+                self._commands.write(EMC_JOG_STOP(joint_or_axis=which, jjogmode=mode))
 
     async def _follow(self, number: Any, serial: int) -> None:
         """Tell how a command ended."""

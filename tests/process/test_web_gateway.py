@@ -2,11 +2,14 @@
 
 import asyncio
 import json
+import time
 
 import aiohttp
 import msgpack
 import pytest
 
+import linuxcnc
+from tests.support.machine import wait_until
 from tests.support.webclient import web_mill
 
 pytestmark = pytest.mark.process
@@ -149,3 +152,29 @@ def test_pages_of_other_servers_do_not_get_in(port):
 
     with pytest.raises(aiohttp.WSServerHandshakeError):
         talk(port, work, Origin="http://evil.example")
+
+
+def test_a_client_that_goes_away_leaves_no_jog_behind(port):
+    async def work(gateway):
+        orders = (
+            ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ESTOP_RESET}),
+            ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ON}),
+            ("EMC_JOG_CONT", {"joint_or_axis": 0, "jjogmode": 1, "vel": 5.0}),
+        )
+        for number, (name, fields) in enumerate(orders):
+            await gateway.send(command=name, fields=fields, id=number)
+            await gateway.until(lambda frame, number=number: frame.get("id") == number)
+        await gateway.send(subscribe="emcStatus", interval=0.02)
+        await gateway.until(lambda frame: "fields" in frame and frame["fields"]["motion"]["joint"][0]["output"] > 1.0)
+
+    talk(port, work)
+    status = linuxcnc.stat()
+
+    def stands():
+        before = status.joint_position[0]
+        time.sleep(0.3)
+        status.poll()
+        return status.joint_position[0] == before
+
+    wait_until(stands, "at rest")
+    assert status.joint_position[0] < 100.0
