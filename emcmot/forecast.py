@@ -287,7 +287,10 @@ def main(arguments: list[str] | None = None) -> int:
         result = forecast(ini, options.program, Machine.from_ini(ini), tools, options.toolchange, traced)
         if options.json:
             text = as_json(result, options.json_points)
-            sys.stdout.write(text + "\n") if options.json == "-" else Path(options.json).write_text(text)
+            if options.json == "-":
+                print(text)
+            else:
+                Path(options.json).write_text(text)
         if options.json != "-":
             print(report(result))
         if options.trace:

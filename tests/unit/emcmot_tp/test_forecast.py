@@ -1,5 +1,7 @@
 """The forecast names the time of a job, by tool and operation, and where it loses time."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -63,6 +65,41 @@ def test_lost_time_is_blamed_on_the_axis_and_the_line(run):
     assert next(iter(result.line_lost)) > 1
 
 
+def test_each_slow_line_says_what_it_waited_for(run):
+    result = run("G21 G90 G61.1\nG1 X1 F6000\nG1 X0\nG1 Z0\nM2\n")
+    assert result.line_reason[2] == "acceleration of X"
+    assert result.line_reason[4] == "acceleration of Z"
+
+
+def test_lines_come_with_the_time_at_which_they_end(run):
+    result = run("G21 G90 G61.1\nG1 X10 F600\nG1 X20\nG4 P1\nG1 Y5\nM2\n")
+    assert [line for line, _ in result.run] == [2, 3, 5]
+    assert [end for _, end in result.run] == pytest.approx([1.02, 2.04, 2.56], abs=0.01)
+
+
+@pytest.mark.parametrize("tolerance", [0.01, 0.1])
+def test_the_path_error_is_within_the_tolerance_and_more_than_nothing(run, tolerance):
+    text = f"G21 G90 F3000\nG64 P{tolerance}\nG1 X20\nG1 Y20\nG3 X0 Y20 I-10\nG1 X0 Y0\nM2\n"
+    error = run(text, trace=True).path_error
+    assert 0.2 * tolerance < error <= tolerance
+
+
+def test_without_a_tolerance_to_use_the_path_is_kept_exactly(run):
+    result = run("G21 G90 G61.1 F3000\nG1 X20\nG2 X20 Y20 Z3 J10 P2\nG1 X0 Y0\nM2\n", trace=True)
+    assert result.path_error < 1e-9
+
+
+def test_a_machine_with_jerk_limits_takes_longer(run, monkeypatch):
+    text = "G21 G90 G64 P0.05 F3000\nG1 X20\nG1 Y20\nM2\n"
+    usual = run(text)
+    limited = INI.replace("[TRAJ]", "[TRAJ]\nPLANNER_TYPE = 1\nMAX_LINEAR_JERK = 5000")
+    monkeypatch.setitem(globals(), "INI", limited)
+    result = run(text, trace=True)
+    jerk = np.abs(traces(result)["jerk"]).max()
+    assert result.seconds > 1.1 * usual.seconds
+    assert 2000 < jerk <= 5000.01
+
+
 def test_traces_hold_every_servo_period(run):
     result = run("G21 G90\nG64 P0.01\nG1 X10 F3000\nG1 Y10\nM2\n", trace=True)
     traced = traces(result)
@@ -89,4 +126,12 @@ def test_the_command_prints_the_time_and_writes_the_traces(tmp_path, capsys):
     assert main([str(tmp_path / "machine.ini"), str(tmp_path / "job.ngc"), "--trace", str(tmp_path / "out.npz")]) == 0
     assert "time 0:00:01.0" in capsys.readouterr().out
     assert np.load(tmp_path / "out.npz")["position"].shape[1] == 9
+    assert main([str(tmp_path / "machine.ini"), str(tmp_path / "job.ngc"), "--png", str(tmp_path / "out.png")]) == 0
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+    capsys.readouterr()
+    assert main([str(tmp_path / "machine.ini"), str(tmp_path / "job.ngc"), "--json", "-", "--path-error"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["seconds"] == pytest.approx(1.02, abs=0.01)
+    assert told["lines"][0][0] == 2
+    assert told["path_error"] < 1e-9
     assert main([str(tmp_path / "none.ini"), str(tmp_path / "job.ngc")]) == 1
