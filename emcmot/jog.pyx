@@ -52,6 +52,13 @@ cdef int aim(FreePlanner* p, int kind, double vel, double offset, double low, do
     return 0
 
 
+cdef int makes_a_limit_worse(const Motion* m, const Joint* joint, int up) noexcept nogil:
+    """Whether the switch on that side is closed. Of two that share a wire, an override lets either way open."""
+    if joint.on_pos_limit and joint.on_neg_limit and m.override_limits:
+        return 0
+    return joint.on_pos_limit if up else joint.on_neg_limit
+
+
 cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) noexcept nogil:
     cdef Joint* joint = &m.joint[number]
     cdef double low, high
@@ -67,7 +74,7 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
     if locks_an_axis(m, number):
         snprintf(report(m, number), TEXT_SIZE, b"Can't jog locking joint_num=%d", number)
         return -1
-    if not m.override_limits and (joint.on_pos_limit if up else joint.on_neg_limit):
+    if makes_a_limit_worse(m, joint, up):
         snprintf(
             report(m, number), TEXT_SIZE, b"Can't jog joint %d further past %s hard limit.", number, b"max" if up else b"min"
         )
@@ -203,7 +210,7 @@ cdef void joint_wheel(Motion* m, Joint* joint, int number, int homing) noexcept 
         return
     if not m.enabled or m.jog_inhibit or m.jog_stop or joint.kb_jog or joint.home.sequence < 0 or not joint.active:
         return
-    if not m.override_limits and (joint.on_pos_limit or joint.on_neg_limit):
+    if makes_a_limit_worse(m, joint, (counts > 0) == (joint.jog_scale > 0.0)):
         return
     if locks_an_axis(m, number):
         if not joint.wheel_refused:

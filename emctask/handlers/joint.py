@@ -64,7 +64,7 @@ def unhome(task: Task, message: EMC_JOINT_UNHOME) -> None:
     task.motion.send(MotCommand.JOINT_UNHOME, joint=_joint(task, message.joint, ALL, VOLATILE))
 
 
-@command(EMC_JOINT_OVERRIDE_LIMITS, on=True, modes=MANUAL)
+@command(EMC_JOINT_OVERRIDE_LIMITS, modes=MANUAL)
 def override_limits(task: Task, message: EMC_JOINT_OVERRIDE_LIMITS) -> None:
     """Let the next jog move off a limit switch; below 0: no longer."""
     task.motion.send(MotCommand.OVERRIDE_LIMITS, joint=message.joint)

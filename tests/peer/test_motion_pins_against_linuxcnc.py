@@ -17,7 +17,7 @@ from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
 
-SCRIPT = r'''
+PRELUDE = r'''
 s, c, e = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
 SHOWN = ("motion.", "joint.0.", "joint.1.", "axis.x.", "spindle.0.")
 
@@ -30,12 +30,15 @@ def snap(name):
         now = (s.joint_position, s.inpos, s.exec_state, s.spindle[0]["speed"])
         still = still + 1 if now == before else 0
         before = now
+    read(name, SHOWN)
+
+def read(name, shown):
     rows = subprocess.run(["halcmd", "-s", "show", "pin"], capture_output=True, text=True).stdout.split("\n")
     words = [row.split() for row in rows]
     texts = []
     while (message := e.poll()):
         texts.append(message[1].strip())
-    out.append([name, {w[4]: w[3] for w in words if len(w) > 4 and w[4].startswith(SHOWN)}, texts])
+    out.append([name, {w[4]: w[3] for w in words if len(w) > 4 and w[4].startswith(shown)}, texts])
 
 def do(call, *args):
     call(*args)
@@ -56,6 +59,8 @@ def mdi(name, *lines):
     snap(name)
 
 time.sleep(1.0)
+'''
+SESSION = r'''
 do(c.state, linuxcnc.STATE_ESTOP_RESET)
 snap("out of E-stop")
 do(c.state, linuxcnc.STATE_ON)
@@ -84,6 +89,11 @@ snap("joint mode")
 do(c.mode, linuxcnc.MODE_MDI)
 snap("MDI")
 mdi("fed", "G21 G90 G1 X10 F600")
+c.mdi("G20 G1 X0.7 F20")
+time.sleep(0.6)
+read("feeding in inches", ("motion.feed-", "motion.requested-vel", "motion.motion-type"))
+c.wait_complete(20)
+mdi("back", "G21 G1 X10 F600")
 mdi("an arc", "G2 X10 Y0 I5 F1200")
 mdi("spindle on", "M3 S1000")
 mdi("outputs wait", "M62 P1", "M67 E1 Q2.5")
@@ -115,6 +125,49 @@ snap("on again")
 setp("joint.1.amp-fault-in", 1)
 snap("amplifier fault")
 '''
+LIMITS = r'''
+def flags(name):
+    s.poll()
+    joint = {key: s.joint[0][key] for key in ("min_hard_limit", "max_hard_limit", "enabled", "override_limits")}
+    texts = []
+    while (message := e.poll()):
+        texts.append(message[1].strip())
+    still = s.joint[0]["velocity"] == 0.0
+    out.append([name, still, s.joint[0]["inpos"], s.limit[:3], s.enabled, s.task_state, joint, texts])
+
+do(c.state, linuxcnc.STATE_ESTOP_RESET)
+do(c.state, linuxcnc.STATE_ON)
+do(c.mode, linuxcnc.MODE_MANUAL)
+for joint in range(3):
+    c.home(joint)
+until(lambda: all(s.homed[:3]))
+do(c.teleop_enable, 0)
+c.jog(linuxcnc.JOG_CONTINUOUS, True, 0, -10)
+until(lambda: s.position[0] < -2)
+flags("jogging")
+setp("joint.0.neg-lim-sw-in", 1)
+until(lambda: not s.enabled)
+time.sleep(0.5)
+flags("at the switch")
+c.override_limits()
+time.sleep(0.5)
+flags("overridden")
+do(c.state, linuxcnc.STATE_ON)
+time.sleep(0.3)
+flags("on")
+c.jog(linuxcnc.JOG_INCREMENT, True, 0, -10, 3)
+time.sleep(0.5)
+flags("jog further")
+c.jog(linuxcnc.JOG_CONTINUOUS, True, 0, 10)
+until(lambda: s.position[0] > -1)
+setp("joint.0.neg-lim-sw-in", 0)
+time.sleep(0.2)
+flags("off the switch")
+c.jog(linuxcnc.JOG_STOP, True, 0)
+until(lambda: s.joint[0]["velocity"] == 0.0)
+time.sleep(0.3)
+flags("stopped")
+'''
 # what differs, and why
 OF_OTHER_CODE = ("time", "last-period", "free-pos-cmd", "free-vel-lim", "teleop-vel-lim")  # the planners' own insides
 UNTIL_ABORT = ("joint.1.error",)  # LinuxCNC's task aborts after a fault, which clears it
@@ -128,10 +181,22 @@ def same(ours: str, theirs: str) -> bool:
         return ours == theirs
 
 
-def test_pins_and_texts_are_those_of_linuxcnc_after_every_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(autouse=True)
+def our_halcmd(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scripts find our halcmd on our machine."""
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-    theirs = stock_machine.display(SCRIPT)
-    ours = stock_machine.ours(tmp_path, SCRIPT)
+
+
+def test_a_limit_switch_stops_the_machine_and_can_be_left_as_with_linuxcnc(tmp_path: Path) -> None:
+    theirs = stock_machine.display(PRELUDE + LIMITS)
+    ours = stock_machine.ours(tmp_path, PRELUDE + LIMITS)
+    for row, stock_row in zip(ours, theirs, strict=True):
+        assert row == stock_row
+
+
+def test_pins_and_texts_are_those_of_linuxcnc_after_every_step(tmp_path: Path) -> None:
+    theirs = stock_machine.display(PRELUDE + SESSION)
+    ours = stock_machine.ours(tmp_path, PRELUDE + SESSION)
     assert [row[0] for row in ours] == [row[0] for row in theirs]
     found = []
     for (name, pins, texts), (_, stock_pins, stock_texts) in zip(ours, theirs, strict=True):

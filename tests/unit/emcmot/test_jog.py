@@ -203,6 +203,42 @@ def test_overridden_limits_last_until_the_next_jog_has_ended() -> None:
     assert m.errors() == ["joint 0 on limit switch error"]
 
 
+def overridden(*switches: str) -> Motion:
+    """Switched on with these limit switches of joint 0 closed."""
+    m = mill("homed")
+    for switch in switches:
+        m[f"joint.0.{switch}-lim-sw-in"] = 1
+    m.step(100)
+    m.send(C.OVERRIDE_LIMITS, joint=0)
+    m.send(C.ENABLE)
+    m.step(100)
+    m.errors()
+    assert m.status.motion_state == 1
+    return m
+
+
+def test_an_override_opens_the_way_off_a_switch_and_not_the_way_on() -> None:
+    m = overridden("neg")
+    assert jog(m, C.JOG_CONT, vel=-10.0) != 0
+    assert m.errors() == ["Can't jog joint 0 further past min hard limit."]
+    m["joint.0.jog-enable"] = 1
+    m["joint.0.jog-scale"] = 0.1
+    m["joint.0.jog-counts"] = -5
+    m.step(200)
+    assert position(m) == 0.0
+    m["joint.0.jog-counts"] = 5
+    m.step(200)
+    assert position(m) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("vel", [10.0, -10.0])
+def test_both_ways_are_open_under_an_override_where_two_switches_share_a_wire(vel: float) -> None:
+    m = overridden("neg", "pos")
+    assert jog(m, C.JOG_CONT, vel=vel) == 0
+    m.step(100)
+    assert position(m) * vel > 0.0
+
+
 def test_an_override_can_be_taken_back() -> None:
     m = mill("homed")
     m["joint.0.pos-lim-sw-in"] = 1
