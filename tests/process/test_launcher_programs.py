@@ -1,8 +1,12 @@
 """What the launcher starts beside the machine, executes at its end, and adds to the reason of a start that failed."""
 
+import os
+import subprocess
+import sys
+
 import pytest
 
-from tests.support.machine import Run, copy_mill, traces, wait_until
+from tests.support.machine import ROOT, Run, copy_mill, traces, wait_until
 
 pytestmark = pytest.mark.process
 
@@ -76,3 +80,11 @@ def test_a_program_that_a_hal_file_waits_for_in_vain_ends_with_the_start(tmp_pat
     finally:
         assert run.stop() == 143
     assert traces() == []
+
+
+def test_the_python_of_our_modules_can_be_named_in_a_scripts_first_line(tmp_path):
+    script(tmp_path / "linuxcnc-python", f"#!{sys.executable}\nfrom linuxcnc.python import main\nmain()\n")
+    script(tmp_path / "tool", "#!/usr/bin/env linuxcnc-python\nimport hal, linuxcnc, sys\nprint(sys.argv[1])\n")
+    environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([tmp_path / "tool", "word"], env=environment, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr) == ("word\n", "")
