@@ -9,7 +9,7 @@
 from libc.errno cimport errno
 from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_RDWR
 from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, munmap
-from posix.time cimport CLOCK_REALTIME, clock_gettime, timespec
+from posix.time cimport CLOCK_MONOTONIC, clock_gettime, clockid_t, timespec
 from posix.unistd cimport close, ftruncate, getpid, usleep
 
 from hal.port cimport hal_port
@@ -43,7 +43,7 @@ cdef extern from "<pthread.h>" nogil:
     int pthread_mutexattr_setrobust(pthread_mutexattr_t*, int)
     int pthread_mutexattr_settype(pthread_mutexattr_t*, int)
     int pthread_mutex_init(pthread_mutex_t*, pthread_mutexattr_t*)
-    int pthread_mutex_timedlock(pthread_mutex_t*, timespec*)
+    int pthread_mutex_clocklock(pthread_mutex_t*, clockid_t, timespec*)
     int pthread_mutex_unlock(pthread_mutex_t*)
     int pthread_mutex_consistent(pthread_mutex_t*)
 
@@ -148,10 +148,10 @@ cdef class Mapping:
         cdef int code
         if self.fd < 0:
             raise HalError("the HAL segment is detached", -22)
-        clock_gettime(CLOCK_REALTIME, &until)
+        clock_gettime(CLOCK_MONOTONIC, &until)
         until.tv_sec += LOCK_SECONDS
         with nogil:
-            code = pthread_mutex_timedlock(&self.at.mutex, &until)
+            code = pthread_mutex_clocklock(&self.at.mutex, CLOCK_MONOTONIC, &until)
         if code == EOWNERDEAD:
             self._repair()
             pthread_mutex_consistent(&self.at.mutex)

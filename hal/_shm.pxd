@@ -30,7 +30,7 @@ cdef class Item(Record):
 
 
 cdef class Port(Item):
-    cdef hal_port* port(self) noexcept
+    cdef hal_port* port(self) except? NULL
 
 
 cdef class Signal(Record):

@@ -356,10 +356,10 @@ cdef class Item(Record):
         return self.item.alias.decode() if self.item.alias[0] else self.name
 
     def get(self):
-        return cell_value(self.cell(), self.item.type)
+        return cell_value(<hal_cell*>(<char*>&self.word.link + self.word.link), self.item.type)
 
     def set(self, value) -> None:
-        set_cell(self.cell(), self.item.type, value)
+        set_cell(<hal_cell*>(<char*>&self.word.link + self.word.link), self.item.type, value)
         announce(self.segment.at)
 
     value = property(get, set)
@@ -398,9 +398,11 @@ cdef class Item(Record):
 
 
 cdef class Port(Item):
-    """A pin of type port: one end of a stream of bytes."""
+    """A pin as one end of a stream of bytes, where its type is port; HalError for another."""
 
-    cdef hal_port* port(self) noexcept:
+    cdef hal_port* port(self) except? NULL:
+        if self.item.type != PORT:
+            raise HalError(f"'{self.head.name.decode()}' is no port")
         return port_at(self.cell())
 
     def readable(self) -> int:
@@ -413,7 +415,8 @@ cdef class Port(Item):
 
     def size(self) -> int:
         """Bytes of the buffer; 0 without one."""
-        return cell_value(self.cell(), PORT)
+        cdef hal_port* port = self.port()
+        return 0 if port == NULL else port.size
 
     def peek(self, uint32_t count):
         """The next bytes, which stay where they are; False where there are not as many."""

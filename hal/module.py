@@ -89,8 +89,10 @@ class Duplicate(HalError, ValueError):
     """What LinuxCNC's module raises as ValueError."""
 
 
-class Pin(Item):
-    """A pin or parameter of a component: what ``newpin`` and ``newparam`` return. ``get`` and ``set`` are native."""
+class Pin(Port):
+    """What ``newpin`` and ``newparam`` return. ``get``, ``set`` and, for type HAL_PORT, what moves bytes are native."""
+
+    __slots__ = ("_is_pin", "_name")
 
     def __init__(self, item: Item, name: str, is_pin: bool) -> None:
         self.show_same(item)
@@ -140,10 +142,6 @@ class Pin(Item):
         return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._name} {TYPE_NAMES[self.type]}>"
 
 
-class PortPin(Port, Pin):
-    """A pin of type HAL_PORT: a stream of bytes, see `hal._shm.Port`."""
-
-
 class component(Items):
     """A user component. Pins are items and attributes: ``c["in"]``, ``c.out = 1`` (names with ``-``: items only)."""
 
@@ -174,7 +172,7 @@ class component(Items):
 
     def _keep(self, name: str, item: Item, is_pin: bool) -> Pin:
         self.keep(name, item)
-        pin = self._pins[name] = (PortPin if item.type == PORT else Pin)(item, name, is_pin)
+        pin = self._pins[name] = Pin(item, name, is_pin)
         return pin
 
     def getpin(self, name: str) -> Pin:

@@ -9,10 +9,8 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import cast
 
 import hal
-from hal.module import PortPin
 from nml.errors import HalError
 
 
@@ -34,7 +32,7 @@ class RasterProgrammer:
 
     def __init__(self, name: str) -> None:
         self._component = hal.component(name)
-        self.port = cast(PortPin, self._component.newpin("program", hal.HAL_PORT, hal.HAL_OUT))
+        self.port = self._component.newpin("program", hal.HAL_PORT, hal.HAL_OUT)
         self.run = self._component.newpin("run", hal.HAL_BIT, hal.HAL_OUT)
         self.enabled = self._component.newpin("enabled", hal.HAL_BIT, hal.HAL_IN)
         self.fault_code = self._component.newpin("fault-code", hal.HAL_S32, hal.HAL_IN)

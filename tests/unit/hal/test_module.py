@@ -193,6 +193,11 @@ def test_a_port_carries_bytes_in_order_once_it_has_a_size(comp: hal.component) -
         writer.set(1)
 
 
+def test_only_ports_move_bytes(comp: hal.component) -> None:
+    with pytest.raises(hal.error, match="'c.x' is no port"):
+        comp.newpin("x", hal.HAL_S32, hal.HAL_OUT).write(b"1")
+
+
 def test_a_port_has_one_reader_and_one_size(comp: hal.component, capsys: pytest.CaptureFixture[str]) -> None:
     comp.newpin("in", hal.HAL_PORT, hal.HAL_IN)
     comp.newpin("in2", hal.HAL_PORT, hal.HAL_IN)
