@@ -6,6 +6,8 @@ import argparse
 import json
 import os
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from nml.errors import ConfigError, InterpError
@@ -15,6 +17,8 @@ from rs274ngc.printer import PrintCanon
 
 CONTINUE, MDI, STOP = 0, 1, 2
 PROMPT = "READ => "
+LONG_BYTES = 2_000_000
+"""Programs of this size get a progress bar."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,6 +38,7 @@ def parser() -> argparse.ArgumentParser:
     add("-l", dest="log_level", type=int, default=-1, metavar="LEVEL", help="log level")
     add("--stats", action="store_true", help="print extents, distances, tools and time instead of canonical calls")
     add("--json", action="store_true", help="the same as JSON")
+    add("--plot", metavar="OUT", help="draw the tool path: OUT.png, or OUT.html to turn and zoom in a browser")
     add("input", nargs="?", help="program; without it, lines are read from the terminal")
     add("output", nargs="?", help="where to write (default: standard output)")
     return options
@@ -56,16 +61,35 @@ def report(error: InterpError, stack: bool) -> None:
 
 
 def show_figures(options: argparse.Namespace) -> int:
-    """``--stats`` and ``--json``."""
-    from rs274ngc import preview, stats
+    """``--stats``, ``--json`` and ``--plot``."""
+    from rs274ngc import plot, preview, stats
 
     machine: dict[str, Any] = {"tools": tooltable.load(options.tools)} if options.tools else {}
-    result = preview.load(options.input, read_ini(options.ini) if options.ini else None, **machine)
+    with progress_bar(options.input) as progress:
+        ini = read_ini(options.ini) if options.ini else None
+        result = preview.load(options.input, ini, progress=progress, parameter_file=options.parameters, **machine)
     if result.error is not None:
         raise result.error
-    values = stats.figures(result)
-    print(json.dumps(values) if options.json else stats.text(values))
+    if options.plot:
+        plot.save(result, options.plot, os.path.basename(options.input))
+    if options.stats or options.json or not options.plot:
+        values = stats.figures(result)
+        print(json.dumps(values) if options.json else stats.text(values))
     return 0
+
+
+@contextmanager
+def progress_bar(path: str) -> Iterator[Callable[[float], None] | None]:
+    """A bar on the terminal while a long program is read; nothing where nobody looks, or for a short one."""
+    if not sys.stderr.isatty() or os.path.getsize(path) < LONG_BYTES:
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(os.path.basename(path), total=1.0)
+        yield lambda share: bar.update(task, completed=share)
 
 
 def type_in(interp: Interpreter, canon: PrintCanon, stack: bool) -> None:
@@ -94,7 +118,7 @@ def main(arguments: list[str] | None = None) -> int:
     errors: list[InterpError] = []
     output = 1
     try:
-        if options.input and (options.stats or options.json):
+        if options.input and (options.stats or options.json or options.plot):
             return show_figures(options)
         if options.output:
             output = os.open(options.output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
@@ -112,7 +136,8 @@ def main(arguments: list[str] | None = None) -> int:
 
         if options.input:
             interp.open(options.input)
-            interp.run_file(options.next == STOP, on_error)
+            with progress_bar(options.input) if options.output else nullcontext() as progress:
+                interp.run_file(options.next == STOP, on_error, progress)
             if errors and options.next == MDI:
                 type_in(interp, canon, options.stack)
             interp.close()

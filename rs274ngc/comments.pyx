@@ -13,6 +13,7 @@ from rs274ngc.state cimport PARAMETERS, State
 DEBUG_PARAMETER = 5599      # 0: DEBUG is silent
 
 ACTIVE = re.compile(r"[ \t]*(msg|debug|print|log|logopen|logappend|logclose|probeopen|probeclose)(?:,|(?=[ )])|$)(.*)", re.I | re.S)
+SHOWN_MIN = 1e-4    # smaller numbers are shown as 0, as LinuxCNC's are
 DIGITS_MAX = 30     # a number this long is not shown
 FIELD = re.compile(r"#<([^>]*)>|#(\d+)|%(d|f|\.\df)")
 
@@ -36,7 +37,7 @@ def expand(State s, str text):
             if not 0 < int(number) < PARAMETERS:
                 return "######"
             value = s.params[<int>int(number)] if not 5420 <= int(number) <= 5428 else s.pos[<int>int(number) - 5420]
-        shown = f"{value:.{decimals}f}"
+        shown = f"{value if abs(value) >= SHOWN_MIN else 0.0:.{decimals}f}"
         return shown if len(shown) < DIGITS_MAX else "######"
 
     return FIELD.sub(field, text)
