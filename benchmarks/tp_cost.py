@@ -4,7 +4,8 @@
     python benchmarks/tp_cost.py [--queue N ...] [--runs N]
 
 The planner does the same work in each run of a job, so the least of several runs is what the work itself costs; the
-rest is the host. The queue is kept full, and in half of the jobs the feed override changes all the time.
+rest is the host. The queue is kept full; each job is run plain, with a feed override that changes all the time, and
+with limited jerk.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ FEED = 100.0
 PERIODS = 8000
 PERIODS_PER_FEED = 20  # between two looks at the queue
 PERIODS_PER_OVERRIDE = 100
+JERK = 10_000.0
+VARIANTS = {"": (False, 0.0), ", overrides": (True, 0.0), ", jerk": (False, JERK)}  # overrides, jerk limit
 BAR = 40  # characters of the longest bar
 EDGES = 1000.0 * 2.0 ** np.arange(-4, 11)  # ns
 
@@ -52,11 +55,14 @@ JOBS: dict[str, tuple[Callable[[Array], Array], float]] = {
 }
 
 
-def run(curve: Callable[[Array], Array], tolerance: float, queue: int, overrides: bool) -> tuple[Array, Array]:
+def run(
+    curve: Callable[[Array], Array], tolerance: float, queue: int, overrides: bool, jerk: float
+) -> tuple[Array, Array]:
     """Nanoseconds of every period and of every move added."""
     planner = Planner(DT, queue)
     for axis in range(9):
-        planner.set_limits(axis, FEED, 500.0)
+        planner.set_limits(axis, FEED, 500.0, jerk)
+    planner.limit_jerk(jerk > 0.0)
     points = curve(np.arange(1.0, 20.0 * PERIODS)).tolist()
     periods: list[Array] = []
     adds: list[int] = []
@@ -101,9 +107,9 @@ def main() -> None:
     shown: dict[str, tuple[Array, Array]] = {}
     for name, (curve, tolerance) in JOBS.items():
         for queue in chosen.queue:
-            for overrides in (False, True):
-                costs = least([run(curve, tolerance, queue, overrides) for _ in range(chosen.runs)])
-                job = f"{name}, overrides" if overrides else name
+            for variant, (overrides, jerk) in VARIANTS.items():
+                costs = least([run(curve, tolerance, queue, overrides, jerk) for _ in range(chosen.runs)])
+                job = name + variant
                 table.add_row(job, str(queue), *row(costs[0]), *row(costs[1]))
                 shown[f"{job}, queue {queue}"] = costs
     console.print(table)
