@@ -9,8 +9,9 @@ import msgpack
 import pytest
 
 import linuxcnc
+from nml import namespace
 from tests.support.machine import wait_until
-from tests.support.webclient import web_mill
+from tests.support.webclient import shared_web_mill
 
 pytestmark = pytest.mark.process
 
@@ -19,13 +20,21 @@ TIMEOUT = 20.0
 EMC_STATE_ESTOP_RESET = 2
 
 
-@pytest.fixture
-def port(tmp_path):
-    tokens = tmp_path / "tokens"
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mill")
+    tokens = folder / "tokens"
     tokens.write_text(f"operator {OPERATOR}\nreader {READER}\n")
     tokens.chmod(0o600)
-    with web_mill(tmp_path, extra="[WEB]\nTOKEN_FILE = tokens") as (_, port):
-        yield port
+    with shared_web_mill(folder, extra="[WEB]\nTOKEN_FILE = tokens") as mill:
+        yield mill
+
+
+@pytest.fixture
+def port(mill, monkeypatch):
+    name, port = mill
+    monkeypatch.setenv(namespace.VARIABLE, name)
+    return port
 
 
 class Gateway:

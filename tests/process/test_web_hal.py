@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import hal
+from nml import namespace
 from tests.support.machine import wait_until
-from tests.support.webclient import Refused, WebClient, web_mill
+from tests.support.webclient import Refused, WebClient, shared_web_mill
 
 pytestmark = pytest.mark.process
 
@@ -30,9 +31,17 @@ net number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
 """
 
 
+@pytest.fixture(scope="module")
+def mill(tmp_path_factory):
+    with shared_web_mill(tmp_path_factory.mktemp("mill"), extra=WEB, changes=QUESTIONS, hal=CHANGER) as mill:
+        yield mill
+
+
 @pytest.fixture
-def page(tmp_path):
-    with web_mill(tmp_path, extra=WEB, changes=QUESTIONS, hal=CHANGER) as (_, port), WebClient(port) as page:
+def page(mill, monkeypatch):
+    name, port = mill
+    monkeypatch.setenv(namespace.VARIABLE, name)
+    with WebClient(port) as page:
         yield page
 
 
@@ -56,6 +65,7 @@ def test_the_tree_shows_what_there_is_and_filters_it(page):
 
 def test_watched_values_come_when_they_change(page):
     page.ready()
+    page.call("mdi.run", text="G0 X0")
     page.call("hal.watch", names=["joint.0.motor-pos-cmd", "x-position", "no.such"])
     page.call("mdi.run", text="G0 X7")
     page.wait(
@@ -88,9 +98,10 @@ def test_the_nets_name_writer_and_readers(page):
 
 def test_the_scope_triggers_in_the_servo_period_of_the_event(page):
     page.ready()
+    page.call("mdi.run", text="G0 X0")
     pin = "joint.0.motor-pos-cmd"
     page.call("scope.start", pins=[pin, "joint.0.vel-cmd"], samples=400, trigger={"pin": pin, "level": 5.0}, before=100)
-    page.call("mdi.run", text="G0 X20")
+    page.call("mdi.run", text="G1 F600 X20")
     page.wait(lambda _: shown(page, "scope"), "record")
     record = shown(page, "scope")[0]
     assert (record["text"], record["period"], record["done"]) == ("", 0.001, True)

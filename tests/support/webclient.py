@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import shutil
 import threading
+import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -205,3 +208,24 @@ def web_mill(
         ini.write_text(f"{ini.read_text()}\n{extra}\n")
     with running(ini) as run:
         yield run, web_port(run)
+
+
+@contextmanager
+def shared_web_mill(folder: Path, **options: Any) -> Iterator[tuple[str, int]]:
+    """A mill for all tests of a file, (namespace, port); each test enters the namespace by `monkeypatch`."""
+    name = f"shared{os.getpid()}-{uuid.uuid4().hex[:8]}"
+    before = os.environ.get(namespace.VARIABLE)
+    os.environ[namespace.VARIABLE] = name
+    with web_mill(folder, **options) as (_, port):
+        _restore(before)
+        yield name, port
+        os.environ[namespace.VARIABLE] = name
+    shutil.rmtree(namespace.runtime_dir(), ignore_errors=True)
+    _restore(before)
+
+
+def _restore(before: str | None) -> None:
+    if before is None:
+        os.environ.pop(namespace.VARIABLE, None)
+    else:
+        os.environ[namespace.VARIABLE] = before
