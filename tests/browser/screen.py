@@ -51,8 +51,6 @@ class Screen:
             self.context.add_init_script(f"localStorage['pyemc.{name}'] ??= {value!r}")
         for pattern, text in (files or {}).items():
             self.page.route(pattern, module(text))
-        self._cut = False
-        self.page.route_web_socket("**/ws", self._wire)
         self.page.goto(f"http://127.0.0.1:{port}/" + (f"#token={token}" if token else ""))
         if wait:
             self.page.wait_for_selector("#rail [role=tab]")
@@ -61,20 +59,6 @@ class Screen:
         ignored = EXPECTED.search(message.text) or GRAPHICS in message.text
         if message.type in ("error", "warning") and not ignored:
             self.problems.append(f"console: {message.text}")
-
-    # --- the network -----------------------------------------------------------------------------------------------
-
-    def _wire(self, socket: Any) -> None:
-        server = socket.connect_to_server()
-        socket.on_message(lambda data: None if self._cut else server.send(data))
-        server.on_message(lambda data: None if self._cut else socket.send(data))
-
-    def cut_network(self) -> None:
-        """From now on nothing passes in either direction, and nobody says goodbye."""
-        self._cut = True
-
-    def mend_network(self) -> None:
-        self._cut = False
 
     # --- an operator's hands ---------------------------------------------------------------------------------------
 

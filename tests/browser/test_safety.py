@@ -8,9 +8,11 @@ from typing import Any
 
 import pytest
 
+from tests.browser.cable import Cable
 from tests.support.machine import wait_until
 from tests.support.webclient import WebClient, web_mill
 
+LONG_WAY = 60.0  # mm; longer than a jog goes on without signs of life
 TOKENS = "operator 0123456789abcdef-operator\nreader 0123456789abcdef-reader\n"
 
 
@@ -21,25 +23,28 @@ def mill(tmp_path: Path) -> Iterator[int]:
 
 
 def jog_ended(observer: WebClient) -> None:
-    """The machine stands, short of its limit."""
+    """The machine stands, and short of its limit."""
     observer.wait(lambda state: not state["jog"] and state["inpos"], "jog ended")
     assert observer.state["position"][0] < 290, "stopped by the loss, not by the limit"
 
 
 def test_a_jog_stops_when_the_network_is_lost(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    cable = Cable(mill)
+    screen = open_screen(cable.port)
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
         screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > 5, "jogging")
-        screen.cut_network()
+        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
+        assert observer.state["jog"], "the signs of life keep it going"
+        cable.cut()
         jog_ended(observer)
         screen.page.wait_for_selector("#offline:visible")
         screen.picture("no-connection.png")
-        screen.mend_network()
+        cable.mend()
         screen.page.wait_for_selector("#offline", state="hidden")
         jog_ended(observer)
         assert not observer.state["jog"], "a button that is still held does not start it again"
+    cable.close()
 
 
 def test_a_jog_stops_when_the_window_loses_the_focus(mill: int, open_screen: Any) -> None:
@@ -47,7 +52,7 @@ def test_a_jog_stops_when_the_window_loses_the_focus(mill: int, open_screen: Any
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
         screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
         screen.page.evaluate("window.dispatchEvent(new Event('blur'))")
         jog_ended(observer)
 
@@ -57,7 +62,7 @@ def test_a_jog_stops_when_the_page_is_closed(mill: int, open_screen: Any) -> Non
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
         screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
         screen.page.close()
         jog_ended(observer)
         observer.wait(lambda state: state["control"] is None, "the controls are free again")
@@ -74,7 +79,7 @@ def test_keys_jog_only_after_they_were_switched_on_and_stop_when_let_go(mill: in
         screen.page.click("#keyboard-jog")
         assert observer.state["position"][0] == 0
         keyboard.down("ArrowRight")
-        observer.wait(lambda state: state["position"][0] > 5, "jogging")
+        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
         keyboard.up("ArrowRight")
         jog_ended(observer)
         there = observer.state["position"][0]
@@ -142,3 +147,24 @@ def test_an_abort_from_one_screen_stops_what_another_started(mill: int, open_scr
     second.page.click("#stop")
     second.wait_state("Ready")
     assert second.position("X") < 240
+
+
+def test_a_gamepad_jogs_only_while_its_deadman_button_is_held(mill: int, open_screen: Any) -> None:
+    screen = open_screen(mill)
+    screen.page.evaluate("""() => {
+      const buttons = Array.from({length: 16}, () => ({pressed: false, value: 0}));
+      window.pad = {connected: true, axes: [0, 0, 0, 0], buttons};
+      navigator.getGamepads = () => [window.pad];
+    }""")
+    screen.power_up()
+    with WebClient(mill, name="observer") as observer:
+        screen.page.click("#gamepad-jog")
+        screen.page.evaluate("window.pad.axes[0] = 0.8")
+        screen.send_mdi("G0 Y1")
+        screen.wait_position("Y", 1)
+        screen.go("manual")
+        assert observer.state["position"][0] == 0, "the stick alone does nothing"
+        screen.page.evaluate("window.pad.buttons[4].pressed = true")
+        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
+        screen.page.evaluate("window.pad.buttons[4].pressed = false")
+        jog_ended(observer)

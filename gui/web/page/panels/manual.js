@@ -99,10 +99,10 @@ function padsOf(config) {
   return [MILL_PAD];
 }
 
-/** The kinds of axes that there are. @param {any} config @returns {("linear" | "angular")[]} */
+/** The kinds of axes that there are. @param {any} config */
 function kindsOf(config) {
-  const linear = config.axes.map((/** @type {any} */ axis) => axis.linear);
-  return [.../** @type {const} */ (linear.includes(true) ? ["linear"] : []), .../** @type {const} */ (linear.includes(false) ? ["angular"] : [])];
+  const kinds = /** @type {const} */ (["linear", "angular"]);
+  return kinds.filter((kind) => config.axes.some((/** @type {any} */ axis) => axis.linear === (kind === "linear")));
 }
 
 /** @param {App} app @param {any} config @param {"linear" | "angular"} kind */
