@@ -162,15 +162,15 @@ def test_a_tcl_file_speaks_hal(own_namespace: str, tmp_path: Path) -> None:
     path = tmp_path / "f.tcl"
     path.write_text(
         "loadrt and2 names=a,b\nforeach n {a b} { setp $n.in0 1 }\nputs [getp b.in0]\nputs $::KINS(JOINTS)\n"
-        "puts [hal list comp]\nsetp nothing 1\n"
+        "puts [hal list comp]\nloadrt $::HAL(LOADS)\ngetp x.0.out\nsetp nothing 1\n"
     )
     ini = tmp_path / "m.ini"
-    ini.write_text("[KINS]\nJOINTS = 3\n")
+    ini.write_text("[KINS]\nJOINTS = 3\n[HAL]\nLOADS = or2 names=x.0\n")
     done = run("halrun", "-i", str(ini), str(path), cwd=tmp_path)
     assert done.stdout.splitlines()[:2] == ["TRUE", "3"]
     assert "and2" in done.stdout
     assert done.returncode == 1
-    assert "parameter or pin 'nothing' not found" in done.stderr
+    assert done.stderr.splitlines()[-1] == f"{path}:8: parameter or pin 'nothing' not found"
 
 
 def test_what_realtime_functions_say_reaches_the_user(tmp_path: Path) -> None:

@@ -194,7 +194,7 @@ def test_a_port_carries_bytes_in_order_once_it_has_a_size(comp: hal.component) -
 
 
 def test_only_ports_move_bytes(comp: hal.component) -> None:
-    with pytest.raises(hal.error, match="'c.x' is no port"):
+    with pytest.raises(hal.error, match="is no port"):
         comp.newpin("x", hal.HAL_S32, hal.HAL_OUT).write(b"1")
 
 
