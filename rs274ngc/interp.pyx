@@ -608,10 +608,9 @@ cdef tuple active_g_codes(State s):
 
 cdef tuple active_m_codes(State s):
     cdef int spindle = 5 if s.turning[0] == 1 else 3 if s.turning[0] == CANON_CLOCKWISE else 4
+    override = 51       # LinuxCNC's figure with M49 too
     if s.feed_override:
         override = 48 if s.speed_override[0] else 50
-    else:
-        override = 51 if s.speed_override[0] else 49
     return (
         s.line, -1, spindle, s.last_change, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
         override, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, 0,
