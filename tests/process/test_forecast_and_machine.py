@@ -14,6 +14,7 @@ from tests.support.recorder import hal_text, recorded
 pytestmark = pytest.mark.process
 
 SPEED = 20.0
+JERK = 20_000.0  # mm/s^3
 
 
 def moving_periods(positions: np.ndarray) -> int:
@@ -28,10 +29,21 @@ def forecast_of(ini_file: Path, program: Path):
     return forecast(ini, program, Machine.from_ini(ini), tooltable.load(table), trace=True)
 
 
-@pytest.mark.parametrize("name", ["arcs_helices", "drilling"])
-def test_the_machine_moves_for_as_long_as_the_forecast_says(tmp_path, name):
+def limit_jerk(ini: Path) -> None:
+    """Let a machine limit the jerk of its axes."""
+    ini.write_text(ini.read_text().replace("[TRAJ]\n", f"[TRAJ]\nPLANNER_TYPE = 1\nMAX_LINEAR_JERK = {JERK}\n"))
+
+
+def largest_jerk(positions: np.ndarray, period: float) -> float:
+    return float(np.abs(np.diff(positions[:, :3], 3, axis=0)).max()) / period**3
+
+
+@pytest.mark.parametrize(("name", "jerk"), [("arcs_helices", False), ("drilling", False), ("drilling", True)])
+def test_the_machine_moves_for_as_long_as_the_forecast_says(tmp_path, name, jerk):
     data = tmp_path / "commands.bin"
     ini = copy_mill(tmp_path, hal=hal_text(data))
+    if jerk:
+        limit_jerk(ini)
     expected = forecast_of(ini, PROGRAMS / f"{name}.ngc")
     run = Run(ini, "--run", str(PROGRAMS / f"{name}.ngc"), speed=SPEED)
     assert run.finish() == 0, run.errors
@@ -39,4 +51,5 @@ def test_the_machine_moves_for_as_long_as_the_forecast_says(tmp_path, name):
     moved = moving_periods(recorded(data))
     assert moved == pytest.approx(moving_periods(expected.positions), rel=0.01)
     assert moved * expected.period == pytest.approx(motion, rel=0.01)
+    assert (largest_jerk(recorded(data), expected.period) <= JERK * 1.001) == jerk
     assert traces() == []
