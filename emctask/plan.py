@@ -35,7 +35,7 @@ BLOCKS_PER_LOOK = 32  # blocks between two looks at the clock
 INTERP_ERROR = 5  # LinuxCNC's number, for stat.interpreter_errcode
 TYPED = "MDI"  # the file that the interpreter names for a line that was typed in
 
-MAY_OFFSET = re.compile(r"#|g0*(?:10|28\.1|30\.1|52|5[4-9]|92)|m0*(?:2|30)(?!\d)", re.IGNORECASE)
+MAY_OFFSET = re.compile(r"#0*5[123]\d\d=|#[\[#]|g0*(?:10|28\.1|30\.1|52|5[4-9]|92)|m0*(?:2|30)(?!\d)", re.IGNORECASE)
 """Words of a block after which the stored offsets may be others."""
 
 

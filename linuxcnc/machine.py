@@ -36,9 +36,7 @@ class MachineError(PyemcError):
 class Machine:
     """All processes of one configuration; use as a context manager, whose end stops and ends everything."""
 
-    def __init__(
-        self, configuration: Configuration, report: Callable[[str], None], talk: Talk = Talk.PROBLEMS
-    ) -> None:
+    def __init__(self, configuration: Configuration, report: Callable[[str], None], talk: Talk = Talk.PROBLEMS) -> None:
         self.configuration = configuration
         self.report = report
         self.talk = talk
@@ -202,7 +200,6 @@ class Machine:
         self._session.close()
         self._guard.dismiss()
         self._instance.release()
-
 
     def _programs_of_hal_files(self, known: list[ProcessRecord]) -> list[ProcessRecord]:
         """What HAL files started and what is no component, or not yet one, when the end comes."""

@@ -129,6 +129,7 @@ TABLES = {
     "1": "T999 P7 Z0.5 D0.1\nT1 P3 Z1.0 D0.125\nT10 P50 Z3 D0.5\nT0 P2 Z0\n",
 }
 
+
 @pytest.mark.parametrize("random", ["0", "1"])
 def test_every_step_of_tool_changes_is_the_same(tmp_path: Path, random: str) -> None:
     script = SCRIPT.replace("TABLE)", f"{TABLES[random]!r})", 1)
