@@ -7,7 +7,7 @@ import json
 import shutil
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -18,6 +18,9 @@ from tests.support.nml_server import free_port
 
 paho = pytest.importorskip("paho.mqtt.client", reason="paho-mqtt is not installed")
 asyncua = pytest.importorskip("asyncua", reason="asyncua is not installed")
+
+from gui.shop.mqtt import main as mqtt_program  # noqa: E402  once the packages are known to be there
+from gui.shop.opcua import main as opcua_program  # noqa: E402
 
 MOSQUITTO = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
 
@@ -209,22 +212,30 @@ async def _connected(endpoint: str) -> asyncua.Client:
 
 
 @pytest.mark.parametrize(
-    ("section", "said"),
+    ("program", "section", "said"),
     [
-        ("[MQTT]\nPORT = 1883", "[MQTT]BROKER is missing"),
-        ("[MQTT]\nBROKER = a\nPORT = many", "[MQTT]PORT = many"),
-        ("[OPCUA]\nENDPOINT = http://here", "[OPCUA]ENDPOINT = http://here"),
-        ("[OPCUA]\nCERTIFICATE = none.pem", "[OPCUA]CERTIFICATE = none.pem"),
+        (mqtt_program, "[MQTT]\nPORT = 1883", "[MQTT]BROKER is missing"),
+        (mqtt_program, "[MQTT]\nBROKER = a\nPORT = many", "[MQTT]PORT = many"),
+        (opcua_program, "[OPCUA]\nENDPOINT = http://here", "[OPCUA]ENDPOINT = http://here"),
+        (opcua_program, "[OPCUA]\nCERTIFICATE = none.pem", "[OPCUA]CERTIFICATE = none.pem"),
     ],
 )
-def test_a_mistake_in_the_section_is_one_clear_line_and_the_machine_goes_on(
-    tmp_path: Path, section: str, said: str
+def test_a_mistake_in_the_section_is_one_clear_line(
+    tmp_path: Path, program: Callable[[list[str]], int], section: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with running(machine_with(tmp_path, section), speed=10.0) as run:
+    ini = machine_with(tmp_path, section)
+    assert program(["-ini", str(ini)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+    assert str(ini) in line
+
+
+def test_the_machine_goes_on_without_a_service_that_ends(tmp_path: Path) -> None:
+    with running(machine_with(tmp_path, "[MQTT]\nPORT = 1883"), speed=10.0) as run:
         switch_on(run)
-        service = Path("/proc", str(run.pids()[section[1:].partition("]")[0].lower()]))
+        service = Path("/proc", str(run.pids()["mqtt"]))
         wait_until(lambda: not service.exists(), "end of the service, seen by the launcher")
         run.stop()
-    assert said in run.errors
+    assert "[MQTT]BROKER is missing" in run.errors
     assert "goes on without it" in run.errors
     assert "Traceback" not in run.errors
