@@ -142,7 +142,16 @@ from emcmot.handlers cimport (
     teleop_vector,
     unhome,
 )
-from emcmot.moves cimport clear_probe_flags, probe, rigid_tap, set_aout, set_circle, set_dout, set_line, set_spindle_sync
+from emcmot.moves cimport (
+    clear_probe_flags,
+    probe,
+    rigid_tap,
+    set_aout,
+    set_circle,
+    set_dout,
+    set_line,
+    set_spindle_sync,
+)
 from emcmot.parameters cimport set_parameters
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
@@ -236,7 +245,9 @@ cdef int check_numbers(Motion* m, const EMCMOT_COMMAND* c, int needs) noexcept n
     for n in range(number_count):
         value = (<const double*>(<const char*>c + NUMBERS[n]))[0]
         if not fabs(value) < 1e300:  # also where it is not a number
-            return refuse(m, c.command, b"it holds a value that is infinite or not a number", MotCommandStatus_INVALID_PARAMS)
+            return refuse(
+                m, c.command, b"it holds a value that is infinite or not a number", MotCommandStatus_INVALID_PARAMS
+            )
     if needs & MOVE:
         if c.id == 0:
             return refuse(m, c.command, b"a move needs an id that is not 0", MotCommandStatus_INVALID_PARAMS)

@@ -124,7 +124,8 @@ cdef void watch_soft_limits(Motion* m) noexcept nogil:
             stop_all(m)
             m.coord_error = 1
             snprintf(
-                report(m, n), TEXT_SIZE, b"Exceeded %s soft limit (%.5f) on joint %d: it is at %.5f. Jog it back in joint mode.",
+                report(m, n), TEXT_SIZE,
+                b"Exceeded %s soft limit (%.5f) on joint %d: it is at %.5f. Jog it back in joint mode.",
                 b"POSITIVE" if joint.on_soft_pos else b"NEGATIVE",
                 joint.max_limit if joint.on_soft_pos else joint.min_limit, n, joint.pos_cmd,
             )

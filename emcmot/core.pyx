@@ -2,7 +2,15 @@
 
 from libc.stdlib cimport calloc, free
 
-from emcmot._messages cimport Enables_FH, Enables_FS, Enables_SS, MAX_AXES, MAX_SPINDLES, MotionState_FREE, TermCond_BLEND
+from emcmot._messages cimport (
+    Enables_FH,
+    Enables_FS,
+    Enables_SS,
+    MAX_AXES,
+    MAX_SPINDLES,
+    MotionState_FREE,
+    TermCond_BLEND,
+)
 from emcmot.homing cimport update_homed
 from emcmot.kins.kinematics cimport KinematicsModule
 from emcmot.pins cimport pins_of

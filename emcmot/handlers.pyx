@@ -350,7 +350,9 @@ cdef int set_joint_comp(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     """One more point of the joint's screw table; positions must rise."""
     cdef Compensation* comp = &m.joint[c.joint].comp
     if comp.points == COMP_POINTS:
-        snprintf(report(m, c.joint), TEXT_SIZE, b"joint %d: too many compensation entries, %d fit", c.joint, COMP_POINTS)
+        snprintf(
+            report(m, c.joint), TEXT_SIZE, b"joint %d: too many compensation entries, %d fit", c.joint, COMP_POINTS
+        )
         return MotCommandStatus_INVALID_PARAMS
     if comp.points and c.comp_nominal <= comp.nominal[comp.points - 1]:
         snprintf(report(m, c.joint), TEXT_SIZE, b"joint %d: compensation values must increase", c.joint)

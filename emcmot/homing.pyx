@@ -28,7 +28,8 @@ cdef const char* NAMES[HOME_STATES]
 
 cdef int fail(Motion* m, Joint* joint, int number, const char* reason) noexcept nogil:
     snprintf(
-        report(m, number), TEXT_SIZE, b"Homing of joint %d failed in state %s: %s", number, NAMES[joint.home.state], reason
+        report(m, number), TEXT_SIZE, b"Homing of joint %d failed in state %s: %s", number, NAMES[joint.home.state],
+        reason,
     )
     joint.home.state = HOME_ABORT
     return 1

@@ -76,7 +76,8 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
         return -1
     if makes_a_limit_worse(m, joint, up):
         snprintf(
-            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past %s hard limit.", number, b"max" if up else b"min"
+            report(m, number), TEXT_SIZE, b"Can't jog joint %d further past %s hard limit.", number,
+            b"max" if up else b"min",
         )
         return -1
     jog_bounds(joint, &low, &high)

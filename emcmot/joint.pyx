@@ -91,7 +91,8 @@ cdef void correct(Joint* joint, double dt) noexcept nogil:
     if joint.vel_cmd != 0.0:
         if comp.points > 1:
             joint.backlash_corr = interpolate(
-                &comp.nominal[0], &comp.forward[0] if joint.vel_cmd > 0.0 else &comp.reverse[0], comp.points, joint.pos_cmd
+                &comp.nominal[0], &comp.forward[0] if joint.vel_cmd > 0.0 else &comp.reverse[0], comp.points,
+                joint.pos_cmd,
             )
         else:
             joint.backlash_corr = 0.5 * joint.backlash if joint.vel_cmd > 0.0 else -0.5 * joint.backlash

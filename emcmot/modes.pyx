@@ -95,7 +95,9 @@ cdef void switch_on(Motion* m) noexcept nogil:
         joint = &m.joint[n]
         if joint.active and not isfinite(joint.pos_fb):
             m.enable_wanted = 0
-            snprintf(report(m, n), TEXT_SIZE, b"Can't enable motion: the position feedback of joint %d is not a number", n)
+            snprintf(
+                report(m, n), TEXT_SIZE, b"Can't enable motion: the position feedback of joint %d is not a number", n
+            )
             return
     for n in range(m.num_joints):
         joint = &m.joint[n]

@@ -78,10 +78,14 @@ cdef int queue(Motion* m, const TpSegment* s, const char* what, const EMCMOT_COM
     cdef int n
     cdef int result = tp_add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
     if result == TP_FULL:
-        snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: the motion queue is full", what, <long>s.id)
+        snprintf(
+            report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: the motion queue is full", what, <long>s.id
+        )
         return MotCommandStatus_BAD_EXEC
     if result != TP_OK:
-        snprintf(report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: bad geometry or speed", what, <long>s.id)
+        snprintf(
+            report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: bad geometry or speed", what, <long>s.id
+        )
         return MotCommandStatus_INVALID_PARAMS
     m.tp_status.done = 0
     m.line_of_id[s.id & (LINES - 1)] = c.line
@@ -144,7 +148,9 @@ cdef int rigid_tap(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     """Queue a tap: in to the end point and out again, with the spindle."""
     cdef TpSegment s
     if m.sync_spindle < 0:
-        snprintf(report(m, -1, c.id), TEXT_SIZE, b"Rigid tap on line %ld: the feed is not synchronised with a spindle", c.id)
+        snprintf(
+            report(m, -1, c.id), TEXT_SIZE, b"Rigid tap on line %ld: the feed is not synchronised with a spindle", c.id
+        )
         return MotCommandStatus_INVALID_COMMAND
     begin_segment(m, c, &s)
     s.kind = TP_TAP

@@ -18,7 +18,7 @@ AXES = "xyzabcuvw"
 
 
 class Pin(NamedTuple):
-    """One pin: its HAL name, ``bit``, ``float``, ``s32`` or ``u32``, ``IN``, ``OUT`` or ``IO``, and where its value is."""
+    """One pin: HAL name, ``bit``, ``float``, ``s32`` or ``u32``, ``IN``, ``OUT`` or ``IO``, and where its value is."""
 
     name: str
     type: str

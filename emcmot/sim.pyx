@@ -91,7 +91,7 @@ cdef class Motion(Core):
         return self.m.command_status
 
     def add_switch(self, int joint, str kinds, double low, double high):
-        """A switch of the joint, closed from ``low`` to ``high`` (true position), wired to ``home``, ``pos``, ``neg``."""
+        """A switch of the joint, closed from ``low`` to ``high`` (true place), wired to ``home``, ``pos``, ``neg``."""
         cdef Ground* g = &self.ground[joint]
         bits = {"home": HOME, "pos": POSITIVE, "neg": NEGATIVE}
         g.switch[g.switches].kind = sum(bits[kind] for kind in kinds.split("+"))

@@ -105,7 +105,7 @@ cdef int world_home_reached(Motion* m) noexcept nogil:
 cdef int align_joints(Motion* m) noexcept nogil:
     """Before a Cartesian mode begins, in free mode at rest: 0 where the joints stand as the kinematics have it.
 
-    Where they do not (the two sides of a gantry stand a little apart when it is switched on), they are sent there slowly.
+    Where they do not (the two sides of a gantry stand a little apart when it is switched on), they go there slowly.
     """
     cdef double joints[MAX_JOINTS]
     cdef Joint* joint
@@ -329,7 +329,7 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
 
 
 cdef void tell_planner(Motion* m, const double* vel, const double* acc, const double* jerk) noexcept nogil:
-    """Limits of axes and of joints; where each joint is one axis, it lowers that axis's limits, else it is looked after itself."""
+    """Limits of axes and joints; a joint that is one axis lowers that axis's limits, others are looked after themselves."""
     cdef double joint_vel[KINS_JOINTS]
     cdef double joint_acc[KINS_JOINTS]
     cdef double joint_jerk[KINS_JOINTS]

@@ -1,7 +1,7 @@
 """Slides that are not quite square or true: joints 0 to 2 are a matrix times x y z; the other joints are axes.
 
-joint 0 = C_xx x + C_xy y + C_xz z, and so on: pins ``C_xx`` .. ``C_zz``, at first the identity. They are what measuring a
-test piece gives.
+joint 0 = C_xx x + C_xy y + C_xz z, and so on: pins ``C_xx`` .. ``C_zz``, at first the identity. They are what measuring
+a test piece gives.
 """
 
 from libc.math cimport fabs
