@@ -32,7 +32,6 @@ function rows(app) {
       send: (value) => app.act("override.spindle", { value, spindle: n }),
     }),
   );
-  const top = config.jog_speed.linear.max_per_min / 60;
   return [
     slider(app, {
       label: _("Feed"), min: 0, max: config.overrides.feed_max, step: 0.01, reset: 1,
@@ -44,7 +43,7 @@ function rows(app) {
     }),
     ...spindles,
     slider(app, {
-      label: _("Max. speed"), min: 0, max: config.max_velocity ?? top, step: (config.max_velocity ?? top) / 100, reset: config.max_velocity ?? top,
+      label: _("Max. speed"), min: 0, max: config.max_velocity, step: config.max_velocity / 100, reset: config.max_velocity,
       keys: ["max_velocity", "program_units", "unit_choice"], read: (v) => v.max_velocity,
       show: (value) => `${fixed(value * scale(app.v) * 60, 0)}`, send: (value) => app.act("override.max_velocity", { value }),
     }),
@@ -66,8 +65,7 @@ function slider(app, { label, min, max, step, reset, keys, read, show, send }) {
   /** @type {number | null} */
   let next = null;
   const shown = h("output", { class: "mono" });
-  const input = h("input", { type: "range", min, max, step: "any", "aria-label": label });
-  input.step = String(step);
+  const input = h("input", { type: "range", min, max, step, "aria-label": label });
   /** One value is under way at a time; the newest one follows. @param {number} value */
   async function push(value) {
     next = value;
