@@ -84,6 +84,15 @@ def test_the_path_error_is_within_the_tolerance_and_more_than_nothing(run, toler
     assert 0.2 * tolerance < error <= tolerance
 
 
+def test_a_spline_is_cut_smoothly_at_the_programmed_feed(run):
+    text = "G21 G90 G64 P0.02 F1200\nG1 X10\nG5 X40 Y20 I15 J0 P-15 Q0\nG5 X70 Y40 I15 J0 P-15 Q0\nG1 X80\nM2\n"
+    result = run(text, trace=True)
+    assert result.path_error <= 0.02
+    speed = np.linalg.norm(traces(result)["velocity"], axis=1)
+    assert speed[60:-60].min() > 0.99 * 20.0
+    assert np.abs(traces(result)["acceleration"]).max() <= 500.001
+
+
 def test_without_a_tolerance_to_use_the_path_is_kept_exactly(run):
     result = run("G21 G90 G61.1 F3000\nG1 X20\nG2 X20 Y20 Z3 J10 P2\nG1 X0 Y0\nM2\n", trace=True)
     assert result.path_error < 1e-9
