@@ -68,9 +68,7 @@ def test_watched_values_come_when_they_change(page):
     page.call("mdi.run", text="G0 X0")
     page.call("hal.watch", names=["joint.0.pos-cmd", "x-position", "no.such"])
     page.call("mdi.run", text="G0 X7")
-    page.wait(
-        lambda _: any(frame["values"].get("joint.0.pos-cmd") == 7.0 for frame in shown(page, "hal")), "seen"
-    )
+    page.wait(lambda _: any(frame["values"].get("joint.0.pos-cmd") == 7.0 for frame in shown(page, "hal")), "seen")
     assert any("x-position" in frame["values"] for frame in shown(page, "hal"))
 
 

@@ -18,6 +18,7 @@ from gui.web.dialogs import questions
 from gui.web.hub import Hub
 from gui.web.jogging import AHEAD, TICK, Target, extension
 from gui.web.loaded import ProgramText
+from gui.web.messages import Messages
 from gui.web.programfolder import ProgramFolder
 from gui.web.settings import Settings
 from gui.web.state import State
@@ -316,3 +317,21 @@ def test_a_method_is_only_performed_for_who_may():
             with pytest.raises(CallError) as refused:
                 asyncio.run(perform(Caller(server, client), name, {}))
             assert refused.value.code == "role", name
+
+
+def test_messages_are_kept_shown_and_written_to_the_log_file(tmp_path):
+    shown = []
+    messages = Messages(tmp_path / "log.txt", shown.append)
+    for number in range(5):
+        messages.add("error", f"number\n{number}", serial=number)
+    assert [message["id"] for message in messages.newest(2)] == [4, 5]
+    assert [message["id"] for message in messages.newest(2, before=4)] == [2, 3]
+    assert shown[0]["text"] == "number\n0"
+    assert (tmp_path / "log.txt").read_text().splitlines()[4].endswith("error: number 4")
+
+
+def test_a_log_file_that_cannot_be_written_stops_nothing(tmp_path):
+    messages = Messages(tmp_path / "no" / "such" / "folder", lambda message: None)
+    messages.add("error", "one")
+    messages.add("error", "two")
+    assert len(messages.newest()) == 2
