@@ -14,6 +14,7 @@ from nml.errors import HalError
 MOST_ITEMS = 2000
 KINDS = ("pin", "sig", "param")
 JS_SAFE = 2**53
+NO_FEEDBACK = {"actual_speed": None, "at_speed": None}
 
 
 class HalView:
@@ -69,6 +70,15 @@ class HalView:
             if cell is not None:
                 found[name] = cell
         return found
+
+    def spindle(self, number: int) -> dict[str, Any]:
+        """What a spindle feeds back: ``actual_speed`` in rpm and ``at_speed``; None what is not wired."""
+        speed = self._hal.segment.find_item(PIN, f"spindle.{number}.speed-in")
+        at_speed = self._hal.segment.find_item(PIN, f"spindle.{number}.at-speed")
+        return {
+            "actual_speed": speed.get() * 60.0 if speed is not None and speed.signal is not None else None,
+            "at_speed": at_speed.get() if at_speed is not None else None,
+        }
 
     def set(self, name: str, value: Any) -> None:
         """Set a pin, parameter or signal; HalError where it is not allowed."""

@@ -16,7 +16,7 @@ from gui.web import dialogs, displaykeys, texts
 from gui.web.access import Access
 from gui.web.client import Client
 from gui.web.forecast import Forecast
-from gui.web.halview import HalView
+from gui.web.halview import NO_FEEDBACK, HalView
 from gui.web.hub import Hub
 from gui.web.jogging import BEAT_INTERVAL, BEAT_TIMEOUT, Jogging
 from gui.web.machine import Machine
@@ -123,6 +123,8 @@ class Server:
         }
 
     def _show_status(self, values: dict[str, Any]) -> None:
+        for number, spindle in enumerate(values.get("spindle", [])):
+            spindle |= self.hal.spindle(number) if self.hal is not None else NO_FEEDBACK
         self.state.update(values)
 
     def _show_message(self, message: dict[str, Any]) -> None:

@@ -98,6 +98,8 @@ def test_spindle_and_coolant_obey(client):
     client.ready()
     client.call("spindle.on", speed=1200.0)
     client.wait(lambda state: state["spindle"][0]["speed"] == 1200.0, "spindle")
+    client.wait(lambda state: state["spindle"][0]["actual_speed"] == pytest.approx(1200.0), "turns")
+    assert client.state["spindle"][0]["at_speed"] is True
     client.call("spindle.off")
     client.call("coolant.flood", on=True)
     client.wait(lambda state: state["flood"] and state["spindle"][0]["direction"] == 0, "coolant")
