@@ -329,7 +329,7 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
 
 
 cdef void tell_planner(Motion* m, const double* vel, const double* acc, const double* jerk) noexcept nogil:
-    """Limits of axes and joints; a joint that is one axis lowers that axis's limits, others are looked after themselves."""
+    """Limits of axes and joints; a joint that is one axis lowers that axis, others are looked after by themselves."""
     cdef double joint_vel[KINS_JOINTS]
     cdef double joint_acc[KINS_JOINTS]
     cdef double joint_jerk[KINS_JOINTS]
