@@ -26,4 +26,5 @@ def test_a_hal_file_prints_the_same_under_both(path: Path, tmp_path: Path) -> No
     text = path.read_text()
     theirs = [line for line in peer(text).splitlines() if not line.startswith("Note:")]
     assert theirs, "the peer did not run"
-    assert script(tmp_path, text).stdout.splitlines() == theirs
+    ours = script(tmp_path, text)
+    assert ours.stdout.splitlines() == theirs, ours.stderr
