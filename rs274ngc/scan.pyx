@@ -16,9 +16,9 @@ from rs274ngc.state cimport State, fail
 
 cdef extern from *:
     """
-    static const long double LONG_DEGREE = 3.141592653589793238462643383279502884L / 180.0L;
+    static const long double LONG_PI = 3.141592653589793238462643383279502884L;
     """
-    const long double LONG_DEGREE       # LinuxCNC's cosine and tangent are extended ones
+    const long double LONG_PI       # LinuxCNC's cosine and tangent are extended ones
 
 cdef double DEGREE = 0.017453292519943295
 cdef double INTEGER_TOLERANCE = 0.0001
@@ -398,7 +398,7 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
             return fail(s, "Argument to asin out of range", at)
         x[0] = asin(v) / DEGREE
     elif function == F_COS:
-        x[0] = <double>cosl(v * LONG_DEGREE)
+        x[0] = <double>cosl(v * LONG_PI / 180.0)
     elif function == F_EXP:
         x[0] = exp(v)
     elif function == F_FIX:
@@ -418,7 +418,7 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
             return fail(s, "Negative argument to sqrt", at)
         x[0] = sqrt(v)
     else:
-        x[0] = <double>tanl(v * LONG_DEGREE)
+        x[0] = <double>tanl(v * LONG_PI / 180.0)
     return 0
 
 
