@@ -4,7 +4,7 @@ Every curve is q(u) in nine axes, u in [0, length], with |dq/du| = 1 in the axes
 for lines and helices, on average for spirals).  Used by build (limits of the spans) and advance (positions).
 """
 
-from libc.math cimport M_PI, atan2, ceil, cos, fabs, hypot, isfinite, sin, sqrt
+from libc.math cimport M_PI, atan2, ceil, cos, hypot, isfinite, sin, sqrt
 
 from emcmot.tp.model cimport AXES, UNIT_ABC, UNIT_UVW, UNIT_XYZ, Segment
 from emcmot.tp.tp cimport TP_ARC, TP_BAD, TP_LINE, TP_OK, TP_TAP, TpSegment

@@ -8,4 +8,4 @@ ctypedef struct Curve:       # a segment, or the blend between `before` and `seg
     double trim
     double length
 
-cdef double add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil
+cdef void add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil

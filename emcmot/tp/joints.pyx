@@ -10,7 +10,7 @@ from libc.math cimport fabs, fmax, fmin
 
 from emcmot.tp.corner cimport blend_position
 from emcmot.tp.geometry cimport position
-from emcmot.tp.model cimport AXES, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, Span, TpState
 from emcmot.tp.joint_map cimport TP_JOINTS
 
 cdef double STEP = 1e-3              # u between the poses that a derivative is taken of
@@ -54,15 +54,15 @@ cdef int _rates(const TpState* tp, const Curve* curve, double u, Rates* rates) n
     return 1
 
 
-cdef double add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil:
-    """Add the joints' rows to a span that has those of the axes; the share of an acceleration that the span misses."""
+cdef void add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil:
+    """Add the joints' rows to a span that has those of the axes; where there is no solution, motion says so when it is there."""
     cdef Rates start, middle, end
     cdef double miss = 0.0, rate, w, a = span.acc, limit
     cdef int k, n = span.n
     if not _rates(tp, curve, span.u0, &start) or not _rates(tp, curve, span.u0 + 0.5 * span.h, &middle):
-        return 0.0
+        return
     if not _rates(tp, curve, span.u0 + span.h, &end):
-        return 0.0
+        return
     for k in range(tp.joints):
         rate = fmax(fabs(start.first[k]), fmax(fabs(middle.first[k]), fabs(end.first[k])))
         if rate == 0.0:
@@ -89,4 +89,3 @@ cdef double add_joints(const TpState* tp, const Curve* curve, Span* span) noexce
     miss = fmin(miss, 1.0 - LEAST_SHARE)
     span.tight = fmin(span.tight, 1.0 - miss)
     span.cap *= (1.0 - miss) * (1.0 - miss)
-    return miss

@@ -17,7 +17,7 @@ from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
 from emcmot.tp.model cimport AXES, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
 from emcmot.tp.smooth cimport limit_smooth, smoothing_tolerance
-from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FH_ENABLED, TP_FS_ENABLED
+from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FS_ENABLED
 
 cdef enum:
     STEPS_PER_PERIOD = 96        # a segment takes three: its corner, the blend before it, itself

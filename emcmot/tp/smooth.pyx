@@ -25,6 +25,7 @@ cdef double EXACT_SMOOTHING = 1e-3   # lu; what exact path mode gives to smoothi
 cdef double SPREAD = 24.0            # an average over T is off by acceleration T^2 / 24
 cdef int LEAST_WINDOW = 8
 
+
 cdef void choose_smoothing(TpState* tp, double tolerance) noexcept nogil:
     """Decide, at rest with an empty queue, whether jerk is limited, and over how many periods positions are averaged."""
     cdef double jerk = INFINITY, time

@@ -12,7 +12,7 @@ from libc.string cimport memcpy, memset
 from emcmot.tp.advance cimport advance
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, LIMITED, SPAN_BLEND, TAP_OUT, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, LIMITED, SPAN_BLEND, TAP_OUT, Segment, Span, TpState
 from emcmot.tp.progress cimport current_id, current_raw, current_segment
 from emcmot.tp.reverse cimport turn_back, turn_forward
 from emcmot.tp.smooth cimport choose_smoothing
