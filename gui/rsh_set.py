@@ -53,8 +53,8 @@ class Access(enum.IntEnum):
 class Setting:
     """One `set` command.
 
-    ``order``: the machine carries it out, so the reply may have to wait for its end; ``waits``: it has an end that comes
-    by itself.
+    ``order``: the machine carries it out, so the reply may have to wait for its end; ``waits``: it has an end that
+    comes by itself.
     """
 
     act: Setter

@@ -70,4 +70,5 @@ def test_a_day_at_the_machine(tmp_path):
 
 def test_completion_names_every_order():
     script = ctl("completion").stdout
-    assert all(word in script for word in ("status", "home", "mdi", "run", "jog", "override", "abort", "tools", "errors"))
+    orders = ("status", "home", "mdi", "run", "jog", "override", "abort", "tools", "errors")
+    assert all(word in script for word in orders)

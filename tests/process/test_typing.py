@@ -32,8 +32,9 @@ command.jog(linuxcnc.JOG_STOP, True)
 def test_right_calls_are_accepted_and_wrong_ones_named(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)
+    options = ["--strict", "--follow-imports=silent", "--cache-dir", str(tmp_path / "cache")]
     result = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", str(tmp_path / "cache"), str(script)],
+        [sys.executable, "-m", "mypy", *options, str(script)],
         cwd=ROOT,
         capture_output=True,
         text=True,

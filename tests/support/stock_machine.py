@@ -184,7 +184,8 @@ def _run(
         process = subprocess.run(command, timeout=seconds)
         found = [folder / name for name in ("machine.log", "client.log", "linuxcnc_debug.txt")]
         logs = "".join(path.read_text(errors="replace")[-3000:] for path in found if path.exists())
-        assert process.returncode == 0 and (folder / "out.json").exists(), logs
+        assert process.returncode == 0, logs
+        assert (folder / "out.json").exists(), logs
         return json.loads((folder / "out.json").read_text())
     finally:
         shutil.rmtree(folder, ignore_errors=True)
