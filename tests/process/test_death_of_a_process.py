@@ -104,7 +104,7 @@ def test_a_guard_that_dies_is_replaced(tmp_path):
 
         def replaced() -> bool:
             found = {pid for pid, command in processes() if "linuxcnc.launcher" in command}
-            return len(found - {run.process.pid, guard}) == 1
+            return len(found - {run.process.pid, guard, *run.pids().values()}) == 1
 
         wait_until(replaced, "a new guard")
         run.process.kill()
