@@ -46,5 +46,5 @@ def hal_text(file: Path, signals: tuple[str, ...] = ("x-position", "y-position",
 def recorded(file: Path, pins: int = 3) -> np.ndarray:
     """The rows written so far."""
     data = np.fromfile(file, dtype=np.float64)
-    rows = int(data[0])
+    rows = int(data[0]) if data.size else 0  # the file is empty until the recorder has made room in it
     return data[1 : 1 + rows * pins].reshape(rows, pins)
