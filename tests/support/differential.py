@@ -123,6 +123,7 @@ KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str]], ...] = tuple(
         ("place of an error in a lathe profile", r"\no\d+ endsub$", r"\ng7[012]"),
         ("overrides after G76 while M49 or M50 P0 is in force", r"ENABLE_FEED_OVERRIDE|DISABLE_FEED_OVERRIDE", ""),
         ("a compensated rapid into a corner", "", r"Straight traverse in concave corner"),
+        ("polar words with G43.1", r"^N\S* USE_TOOL_LENGTH_OFFSET\(0.0000 0.0000", "USE_TOOL_LENGTH_OFFSET"),
         ("a word twice", "", r"Multiple [pq@^] words"),
         ("M98 without P beyond a search", "Found 'm98' code with no P-word", ""),
         ("$ with G95 or G97", r"\$ \(spindle selection\) word with no", ""),
@@ -147,7 +148,7 @@ def explained(left: str, right: str, one: Outcome, other: Outcome, lathe: bool =
     """The name of a known difference, empty for an unknown one; ``lathe``: the program has a lathe cycle."""
     if lathe and (nearly(left, right) or "G7X error" in one.refusal[0] or left.startswith("Oops")):
         return "a corner of a lathe profile"
-    if one.calls == other.calls and one.refusal[1] == other.refusal[1] != "":
+    if one.refusal[1] == other.refusal[1] != "" and one.refusal[0] != other.refusal[0]:
         return "another error of the same line"
     left, right = "\n".join((left, *one.refusal)), "\n".join((right, *other.refusal))
     for name, their_line, our_line in KNOWN:
