@@ -14,6 +14,7 @@ from rs274ngc.state cimport EXIT, FINISH, WAIT_INPUT, State, fail, fail_word
 cdef int SIDE_OFF = CANON_SIDE_OFF, STOPPED = CANON_STOPPED
 cdef int CLOCKWISE = CANON_CLOCKWISE, COUNTERCLOCKWISE = CANON_COUNTERCLOCKWISE
 cdef int OUTPUTS_MAX = 63       # highest number of a digital or analog input or output
+cdef double NO_VALUE = -1.0     # what M67 and M68 without Q send, as LinuxCNC does
 
 
 # --- Spindles and coolant
@@ -160,9 +161,9 @@ cdef int analog_output(State s, Block* b, int code) except -1:
         return fail(s, f"Invalid analog index with M{code}", b.m_at[5])
     index = <int>floor(b.value[W_E] + 0.5)
     if code == 67:
-        s.canon.set_motion_output_value(index, value_or(b, W_Q, 0.0))
+        s.canon.set_motion_output_value(index, value_or(b, W_Q, NO_VALUE))
     else:
-        s.canon.set_aux_output_value(index, value_or(b, W_Q, 0.0))
+        s.canon.set_aux_output_value(index, value_or(b, W_Q, NO_VALUE))
     return 0
 
 

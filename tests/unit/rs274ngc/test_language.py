@@ -74,3 +74,10 @@ def test_a_block_is_executed_in_the_order_of_execution(run):
 def test_an_unknown_tool_is_refused(run):
     with pytest.raises(InterpError, match="Requested tool 5 not found"):
         run("t5 m6\nm2\n")
+
+
+def test_an_analog_output_without_a_value_is_sent_minus_one(run):
+    calls = run("m67 e1\nm68 e2\nm67 e0 q3\nm2\n").calls
+    assert ("set_motion_output_value", (1, -1.0)) in calls
+    assert ("set_aux_output_value", (2, -1.0)) in calls
+    assert ("set_motion_output_value", (0, 3.0)) in calls
