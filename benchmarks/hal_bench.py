@@ -16,6 +16,7 @@ import shutil
 import statistics
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from pathlib import Path
 
@@ -35,6 +36,7 @@ CASES = {
     + "".join(f"net s{n} sum2.{n}.out sum2.{n + 1}.in0\n" for n in range(99))
     + "".join(f"addf sum2.{n} t\n" for n in range(100)),
 }
+PEER_PYTHON = "/usr/bin/python3"
 PYTHON = """
 import hal, timeit
 c = hal.component("bench")
@@ -86,14 +88,26 @@ def thread_time(folder: Path, body: str, ours: bool) -> float:
     return statistics.median(values[20:]) / (1000.0 if ours else clocks_per_us())
 
 
+def _loads_ours(python: str) -> bool:
+    """Whether another interpreter takes modules compiled for this one."""
+    code = "import sys; print(sys.implementation.cache_tag)"
+    try:
+        done = subprocess.run([python, "-c", code], capture_output=True, text=True, check=False)
+    except OSError:
+        return False
+    return done.stdout.strip() == sys.implementation.cache_tag
+
+
 def python_times(folder: Path, ours: bool) -> list[float]:
-    """us for an item's get and set, and a pin's."""
+    """us for an item's get and set, and a pin's; on the same interpreter where Debian's can load our modules."""
     path = folder / "bench.py"
     path.write_text(PYTHON)
     if ours:
-        command, environment = [sys.executable, str(path)], {**os.environ, "PYTHONPATH": str(CHECKOUT)}
+        python = PEER_PYTHON if _loads_ours(PEER_PYTHON) else sys.executable
+        places = os.pathsep.join((str(CHECKOUT), sysconfig.get_path("purelib")))
+        command, environment = [python, str(path)], {**os.environ, "PYTHONPATH": places}
     else:
-        command = [*_shield(), f"/usr/bin/python3 {path}"]
+        command = [*_shield(), f"{PEER_PYTHON} {path}"]
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True)
     return [float(line) for line in done.stdout.split()]
