@@ -72,14 +72,14 @@ class Machine:
         self._spawn("io", configuration.io)
         if configuration.halui is not None:
             self._spawn("halui", configuration.halui)
+        if configuration.server is not None:
+            self._spawn("server", configuration.server)
         self.wait_until(self._host_runs, "the realtime host")
         self.wait_until(self._component_ready("iocontrol"), "io")
         if configuration.halui is not None:
             self.wait_until(self._component_ready("halui"), "halui")
         set_up(self._session, configuration.ini, configuration.folder, configuration.hal_files)
         self._hal_is_set_up = True
-        if configuration.server is not None:
-            self._spawn("server", configuration.server)
         self._record_user_components()
         status = Channel(self._nml_file, "emcStatus", "xemc")
         self.wait_until(lambda: status.peek() is not None, "task")
