@@ -160,7 +160,8 @@ def test_a_manual_tool_change_waits_for_the_operator(page):
     page.ready()
     assert page.hello["config"]["manual_tool_change"]
     change = page.start("toolchange.load", tool=3)
-    page.wait(lambda state: state["toolchange"], "asked")
+    page.wait(lambda state: state["toolchange"] or change.done(), "asked")
+    assert not change.done(), change.exception()
     assert page.state["toolchange"]["tool"] == 3
     assert page.state["tool_in_spindle"] == 0
     page.call("toolchange.confirm")
