@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import linuxcnc
-from tests.support.machine import PACKAGED_NML, RshClient, copy_mill, running, traces
+from tests.support.machine import PACKAGED_NML, RshClient, copy_mill, running, traces, wait_until
 from tests.support.nml_server import free_port, remote_text
 
 pytestmark = pytest.mark.process
@@ -29,7 +29,7 @@ def test_a_display_that_is_a_remote_client_runs_the_machine(tmp_path: Path, monk
         for line in ("set estop off", "set machine on", "set mode manual", "set home -1", "set joint_wait_homed",
                      "set mode mdi", "set mdi g0 x3"):
             assert client.ask(line) == f"SET {line.split()[1].upper()} ACK"
-        assert client.ask("get abs_act_pos x") == "ABS_ACT_POS X 3.000000"
+        wait_until(lambda: client.ask("get abs_act_pos x") == "ABS_ACT_POS X 3.000000", "the feedback follows to 3")
         assert client.ask("set mdi g1 bad") == "SET MDI NAK"
         assert client.ask("get error").startswith("ERROR Bad character")
         monkeypatch.setattr(linuxcnc, "nmlfile", str(tmp_path / "local.nml"))

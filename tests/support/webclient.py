@@ -160,12 +160,13 @@ class WebClient:
         self.socket._conn.transport.pause_reading()
 
     def ready(self) -> None:
-        """Take the controls, switch on, home all."""
+        """Take the controls, switch on, home what is not homed, and stand still."""
         self.call("control.take")
         self.call("machine.estop_reset")
         self.call("machine.power", on=True)
-        self.call("home", joint=-1)
-        self.wait(lambda state: state["all_homed"], "homed")
+        if not self.state["all_homed"]:
+            self.call("home", joint=-1)
+        self.wait(lambda state: state["all_homed"] and state["inpos"], "homed and at rest")
 
     def upload(self, name: str, text: str, replace: bool = False) -> int:
         """Send a program; the HTTP status."""
