@@ -47,7 +47,7 @@ class Configuration:
     """A checked INI file: everything it names exists, or ConfigError says what does not."""
 
     def __init__(self, path: Path, overrides: Overrides | None = None) -> None:
-        self.path = path.resolve()
+        self.path = path.absolute()
         self.folder = self.path.parent
         self.overrides = overrides or Overrides()
         self.ini = IniFile(self.path)

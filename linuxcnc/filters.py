@@ -52,7 +52,7 @@ def filtered(ini: IniFile, path: Path, progress: Progress = lambda percent: None
         try:
             process = subprocess.Popen(
                 [*shlex.split(command), str(path)],
-                cwd=ini.file.resolve().parent,
+                cwd=ini.file.absolute().parent,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.PIPE,

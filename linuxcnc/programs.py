@@ -49,7 +49,7 @@ class Programs:
 
     def __init__(self, ini: IniFile) -> None:
         self._ini = ini
-        self._path = ini.file.resolve()
+        self._path = ini.file.absolute()
         self._folder = self._path.parent
 
     def ours(self, name: str, module: str, *arguments: str) -> Command:

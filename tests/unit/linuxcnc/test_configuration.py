@@ -43,3 +43,18 @@ def test_the_environment_names_what_scripts_expect(tmp_path):
 def test_a_mistake_is_named_with_its_line(tmp_path, entry, value):
     with pytest.raises(ConfigError, match=rf"mill_mm.ini:\d+: .*{value}"):
         configuration(tmp_path, {entry: value})
+
+
+def test_an_ini_file_that_is_a_link_names_files_from_the_folder_of_the_link(tmp_path):
+    shared, here = tmp_path / "shared", tmp_path / "here"
+    for folder in (shared, here):
+        folder.mkdir()
+    ini = copy_mill(shared, changes={"DISPLAY.DISPLAY": "./screen", "HAL.HALFILE": "own.hal"})
+    (here / "machine.ini").symlink_to(ini)
+    for name in ("screen", "own.hal"):
+        (here / name).write_text("#!/bin/sh\n")
+        (here / name).chmod(0o755)
+    found = Configuration(here / "machine.ini")
+    assert found.display().words == [str(here / "screen"), "-ini", str(here / "machine.ini")]
+    assert {file.path for file in found.hal_files} == {here / "own.hal"}
+    assert found.folder == here
