@@ -49,12 +49,13 @@ def test_an_ini_file_that_is_a_link_names_files_from_the_folder_of_the_link(tmp_
     shared, here = tmp_path / "shared", tmp_path / "here"
     for folder in (shared, here):
         folder.mkdir()
-    ini = copy_mill(shared, changes={"DISPLAY.DISPLAY": "./screen", "HAL.HALFILE": "own.hal"})
-    (here / "machine.ini").symlink_to(ini)
+    copy_mill(shared, changes={"DISPLAY.DISPLAY": "./screen", "HAL.HALFILE": "own.hal"})
+    for file in shared.iterdir():
+        (here / file.name).symlink_to(file)
     for name in ("screen", "own.hal"):
         (here / name).write_text("#!/bin/sh\n")
         (here / name).chmod(0o755)
-    found = Configuration(here / "machine.ini")
-    assert found.display().words == [str(here / "screen"), "-ini", str(here / "machine.ini")]
+    found = Configuration(here / "mill_mm.ini")
+    assert found.display().words == [str(here / "screen"), "-ini", str(here / "mill_mm.ini")]
     assert {file.path for file in found.hal_files} == {here / "own.hal"}
     assert found.folder == here
