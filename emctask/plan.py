@@ -72,6 +72,8 @@ class Plan:
         self._restore: Block | None = None
         """Where the machine was when a program was aborted; the interpreter had read on."""
         self.interpreter_code = 0
+        self._units = canon.coords.units
+        """The program's length units when the interpreter last took over the state of the machine."""
 
     # --- Programs
 
@@ -108,7 +110,7 @@ class Plan:
         self._begin(Source.MDI)
         self._execute(lambda: self.interp.execute_mdi(text))
         if not self.waiting_for_synch and not self.interp.call_level:
-            self.at_end = True
+            self._reached_end()
 
     def _begin(self, source: Source) -> None:
         self._last_line = ""
@@ -154,7 +156,7 @@ class Plan:
                 return
             self.synch()
             if self.source is Source.MDI and not self.interp.call_level:
-                self.at_end = True
+                self._reached_end()
                 return
         until = clock.host_now() + SLICE_S
         if self.dry_run is not None and not self._reach_line(self.dry_run, until):
@@ -186,7 +188,7 @@ class Plan:
             return False
         self._execute(interp.execute)
         if self.source is Source.MDI and not interp.call_level and not self.waiting_for_synch:
-            self.at_end = True
+            self._reached_end()
         return not (self.at_end or self.waiting_for_synch)
 
     def _execute(self, execute: Callable[[], int]) -> None:
@@ -231,7 +233,7 @@ class Plan:
         self._last_line = self.program_line
         self.source = Source.NOTHING
         self.waiting_for_synch = False
-        self.must_synch |= self.canon.tool_data_changed
+        self.must_synch |= self.canon.tool_data_changed or self.canon.coords.units != self._units
 
     # --- Agreement with the machine
 
@@ -244,6 +246,7 @@ class Plan:
         self.interp.synch()
         self.waiting_for_synch = False
         self.must_synch = self.canon.tool_data_changed = False
+        self._units = self.canon.coords.units
         restore, self._restore = self._restore, None
         if restore is not None:
             self._bring_back(restore)
@@ -251,11 +254,13 @@ class Plan:
 
     def _bring_back(self, place: Block) -> None:
         """The modes and offsets of ``place`` are in force again; the operator is told what cannot be."""
+        tolerance_set = self.canon.tolerance_set
         for line in standing.blocks(place, self.canon):
             try:
                 self.interp.execute_mdi(line)
             except InterpError as error:
                 self.sequencer.hooks.show_text(f"after the abort {line} is not in force again: {error.message}")
+        self.canon.tolerance_set = tolerance_set
         if place.modes is not None:
             standing.set_motion(self.interp, place.modes)
         self.interp.synch()

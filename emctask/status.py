@@ -12,6 +12,7 @@ from emctask.config import MachineConfig
 from emctask.layout import image
 from emctask.motionview import MotionView
 from emctask.places import Modes
+from emctask.world import WorldModel
 from nml import clock
 from nml.channel import Channel
 from nml.emc import EMC_STAT
@@ -109,7 +110,7 @@ class StatusWriter:
         t.readLine = plan.interp.line if plan.active else 0
         block = place.block if place else task.sequencer.current_block if plan.active else None
         t.callLevel = block.level if block else plan.interp.call_level
-        self._fill_modes((block.modes if block else None) or plan.modes)
+        self._fill_modes((block.modes if block else None) or plan.modes, task.canon)
         if task.offsets != self._offsets:
             self._offsets = dict(task.offsets)
             for name, value in self._offsets.items():
@@ -119,14 +120,14 @@ class StatusWriter:
                 self._texts[name] = text
                 setattr(t, name, text[:254])
 
-    def _fill_modes(self, modes: Modes) -> None:
+    def _fill_modes(self, modes: Modes, canon: WorldModel) -> None:
         if modes is self._modes or not modes.g_codes:
             return
         self._modes = modes
         task = self.message.task
         task.activeGCodes = modes.g_codes
         task.activeMCodes = modes.m_codes
-        task.activeSettings = modes.settings
+        task.activeSettings = canon.shown_settings(modes.settings)
 
     def close(self) -> None:
         """Close the channel."""

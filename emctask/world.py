@@ -17,6 +17,10 @@ from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPE
 from rs274ngc.moves import MoveCanon
 
 
+UNSET_TOLERANCE_MM = 0.0254
+"""What LinuxCNC shows as path tolerance until a program sets one; the planner has none then."""
+
+
 class SpindleState:
     """What the program asked of one spindle."""
 
@@ -51,6 +55,8 @@ class WorldModel(MoveCanon):
         self.motion = motion
         self.io = io
         self.input_timed_out: Callable[[], bool] = lambda: False
+        self.tolerance_set = False
+        """Has a program chosen a path mode?"""
         self._feed_word = 0.0, 1.0  # F as programmed, and the machine units of a program unit then
         self.spindles = [SpindleState() for _ in range(MAX_SPINDLES)]
         self.set_limits(config.max_axis_velocities, config.max_axis_accelerations, config.axis_mask)
@@ -58,6 +64,16 @@ class WorldModel(MoveCanon):
     def set_feed_rate(self, rate: float) -> None:
         self._feed_word = rate, self.coords.length(1.0)
         MoveCanon.set_feed_rate(self, rate)
+
+    def set_motion_control_mode(self, mode: int, tolerance: float) -> None:
+        self.tolerance_set = True
+        MoveCanon.set_motion_control_mode(self, mode, tolerance)
+
+    def shown_settings(self, settings: tuple[float, ...]) -> tuple[float, ...]:
+        """The interpreter's settings (line, F, S, path and naive CAM tolerance) as clients are to see them."""
+        if self.tolerance_set:
+            return settings
+        return (*settings[:3], UNSET_TOLERANCE_MM * self.config.length_units / self.coords.length(1.0), *settings[4:])
 
     def get_external_position(self) -> tuple[float, ...]:
         position = self.motion.status.carte_pos_cmd

@@ -59,6 +59,25 @@ def test_mdi_lines_queue_and_run_in_order_and_feed_survives_an_abort(desk):
         assert desk.stat.settings[1] == feed
 
 
+def test_a_typed_line_that_could_be_joined_with_a_next_one_is_carried_out_at_once(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    assert desk.mdi("G64 P0.1 Q0.05") == DONE
+    for target in (1.0, 2.0):
+        assert desk.mdi(f"G1 X{target} F3000") == DONE
+        assert x(desk) == target
+
+
+def test_feed_and_tolerances_show_in_the_units_of_the_program_as_soon_as_these_change(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    assert desk.look().settings[3] == pytest.approx(0.001 * 25.4)
+    assert desk.mdi("F600") == DONE
+    assert desk.mdi("G64 P0.254 Q0.127") == DONE
+    assert desk.mdi("G20") == DONE
+    assert desk.look().settings[1:5] == pytest.approx((600 / 25.4, 0.0, 0.01, 0.005))
+    assert desk.mdi("G21") == DONE
+    assert desk.look().settings[1:5] == pytest.approx((600.0, 0.0, 0.254, 0.127))
+
+
 def test_offsets_and_tools_show_in_the_status_and_survive_in_their_files(desk):
     desk.ready(linuxcnc.MODE_MDI)
     assert desk.mdi("G10 L2 P1 X5 Y6") == DONE
