@@ -79,6 +79,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
         io,
         StatusWriter(config, channel("emcStatus")),
         OperatorLine(channel("emcError")),
+        channel("emcResults"),
         pins,
     )
     task.plan.startup(config.startup_code)

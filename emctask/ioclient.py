@@ -59,6 +59,11 @@ class IoClient:
         self._line.extend(commands)
         self._advance()
 
+    @property
+    def sent(self) -> int:
+        """How many commands were given to it, those that wait included."""
+        return self._serial + len(self._line)
+
     def _advance(self) -> None:
         while self._line and self.echoed_last:
             command = self._line.popleft()

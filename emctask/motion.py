@@ -74,6 +74,11 @@ class MotionClient:
         return age is not None and age < DEAD_S
 
     @property
+    def sent(self) -> int:
+        """Number of the last command that was sent, signs of life aside."""
+        return self._sent
+
+    @property
     def echoed(self) -> bool:
         """Has motion taken everything that was sent?"""
         return self.status.commandNumEcho >= self._sent

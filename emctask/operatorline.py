@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 
 from emctask.places import Places
 from nml.channel import Channel
 from nml.emc import EMC_OPERATOR_DISPLAY, EMC_OPERATOR_ERROR, EMC_OPERATOR_TEXT
 from nml.emc.emcmot import EMCMOT_ERROR
 from nml.errors import NmlError
+
+OperatorMessage = EMC_OPERATOR_ERROR | EMC_OPERATOR_TEXT | EMC_OPERATOR_DISPLAY
 
 MAX_BYTES = 254
 log = logging.getLogger(__name__)
@@ -17,12 +20,14 @@ log = logging.getLogger(__name__)
 class OperatorLine:
     """The way to the operator. A full buffer loses the text, but never stops the machine's controller.
 
-    ``serial`` is the number of the command that is being carried out, 0 if there is none; texts carry it as ``id``.
+    ``serial`` is the number of the command that is being carried out, 0 if there is none; texts carry it as ``id``,
+    and ``also_tell`` gets the text for those who wait for that command's result.
     """
 
     def __init__(self, channel: Channel) -> None:
         self._channel = channel
         self.serial = 0
+        self.also_tell: Callable[[OperatorMessage], None] | None = None
 
     def error(self, text: str) -> None:
         """Something went wrong."""
@@ -37,16 +42,23 @@ class OperatorLine:
         """Something the operator should know."""
         self._write(EMC_OPERATOR_DISPLAY(id=self.serial, display=_cut(text)))
 
-    def from_motion(self, error: EMCMOT_ERROR, places: Places) -> None:
-        """Forward a text of motion; a move's id becomes the line of the program that asked for it."""
+    def from_motion(self, error: EMCMOT_ERROR, places: Places, order: int) -> None:
+        """Forward a text of motion; a move's id becomes the line of the program that asked for it.
+
+        ``order``: the command that it belongs to, 0: the one that is being carried out.
+        """
+        serial, self.serial = self.serial, order or self.serial
         text = error.text
         if error.id:
             place = places.find(error.id)
             where = f"line {place.line}" if place and place.block.file else "the MDI line"
             text = text.replace(f"line {error.id}", where)
         {11: self.error, 12: self.text, 13: self.display}.get(error.kind, self.error)(text)
+        self.serial = serial
 
-    def _write(self, message: EMC_OPERATOR_ERROR | EMC_OPERATOR_TEXT | EMC_OPERATOR_DISPLAY) -> None:
+    def _write(self, message: OperatorMessage) -> None:
+        if self.also_tell is not None:
+            self.also_tell(message)
         try:
             self._channel.write(message)
         except NmlError as error:

@@ -18,6 +18,7 @@ from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.emc.constants import ORDER_OUTCOME as Outcome
 from nml.emc.emcmot import MotCommand
 from nml.errors import PyemcError
 
@@ -54,9 +55,13 @@ class Runner:
         """Queue an MDI line; it runs at once if nothing else does."""
         self._task.mdi_queue.append((text, self._task.echo))
 
+    def owns(self, serial: int) -> bool:
+        """Does the program or an MDI line of this command run or wait to run?"""
+        return serial == self.serial or any(serial == waiting for _, waiting in self._task.mdi_queue)
+
     def _start(self, begin: Callable[[], None], serial: int) -> None:
         self._begin = begin
-        self.serial = serial
+        self.serial = self._task.operator.serial = serial
         self._set(Interp.READING)
 
     def _set(self, state: Interp) -> None:
@@ -78,7 +83,7 @@ class Runner:
             text, serial = task.mdi_queue.popleft()
             task.mdi_text = text
             self._start(lambda: task.plan.start_mdi(text), serial)
-        if self._begin is not None and not task.plan.must_synch:
+        if self._begin is not None and not task.plan.must_synch and task.sequencer.idle:
             begin, self._begin = self._begin, None
             self._guard(begin)
         if task.plan.active and not task.paused:
@@ -90,8 +95,8 @@ class Runner:
         try:
             task.sequencer.execute()
         except ExecutionError as error:
-            self.abort(Reason.TASK_EXEC_ERROR)
             task.fail(str(error))
+            self.abort(Reason.TASK_EXEC_ERROR)
         self._finish_when_done()
 
     def _guard(self, work: Callable[[], None]) -> None:
@@ -121,18 +126,23 @@ class Runner:
         task = self._task
         task.plan.abort(task.plan.block_in_execution())
         self.stepping = False
-        task.fail(text)
-        self.serial = 0
-        self._set(Interp.IDLE)
+        self._refuse(text)
 
     def _reject_line(self, text: str) -> None:
         """An MDI line that is wrong before it does anything: nothing changes, and the lines that wait behind it go."""
         task = self._task
+        for _, serial in task.mdi_queue:
+            task.results.end(serial, Outcome.ABORTED)
         task.mdi_queue.clear()
         task.mdi_text = ""
         task.plan.finish()
         task.plan.must_synch = True
+        self._refuse(text)
+
+    def _refuse(self, text: str) -> None:
+        task = self._task
         task.fail(text)
+        task.results.end(self.serial, Outcome.REFUSED)
         self.serial = 0
         self._set(Interp.IDLE)
 
@@ -157,8 +167,10 @@ class Runner:
             task.failed = True
             return
         plan.finish()
+        self._synchronise_when_quiet()
         task.mdi_text = ""
         self.stepping = False
+        task.results.end(self.serial, Outcome.DONE)
         self.serial = 0
         task.canon.places.forget()
         self.save_parameters()
@@ -250,6 +262,7 @@ class Runner:
         self._begin = None
         self._pending_error = ""
         self.stepping = False
+        task.results.aborted(reason, self.serial, [serial for _, serial in task.mdi_queue])
         self.serial = 0
         task.mdi_queue.clear()
         task.mdi_text = ""

@@ -30,7 +30,8 @@ class Supervisor:
         task = self._task
         self._partners()
         for error in task.motion.errors():
-            task.operator.from_motion(error, task.canon.places)
+            order = task.results.refused_by_motion(error.echo_serial_number)
+            task.operator.from_motion(error, task.canon.places, order)
         self._refusals()
         self._state()
         self._homed()
@@ -45,8 +46,8 @@ class Supervisor:
                     task.operator.error(f"{name} answers again; reset the E-stop to go on")
             elif name not in self._lost:
                 self._lost.add(name)
-                transitions.emergency_stop(task, Reason.MOTION_OR_IO_RCS_ERROR)
                 task.fail(f"{name} does not answer any more; the machine is in E-stop")
+                transitions.emergency_stop(task, Reason.MOTION_OR_IO_RCS_ERROR)
 
     def _refusals(self) -> None:
         """A command that motion refused or a move that failed ends the program."""

@@ -21,6 +21,7 @@ from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from emctask.operatorline import OperatorLine
 from emctask.plan import Plan
+from emctask.results import Results
 from emctask.runner import Runner
 from emctask.sequencer import Sequencer
 from emctask.status import StatusWriter
@@ -30,6 +31,7 @@ from nml.channel import Channel
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.emc.constants import ORDER_OUTCOME as Outcome
 from nml.inifile import IniFile
 from nml.message import Command, Message
 
@@ -49,6 +51,7 @@ class Expectation:
     arrived: Callable[[], bool]
     deadline: float  # host time
     complaint: str
+    serial: int  # of the command
 
 
 class Task:
@@ -63,6 +66,7 @@ class Task:
         io: IoClient,
         status: StatusWriter,
         operator: OperatorLine,
+        results: Channel,
         pins: IniPins,
     ) -> None:
         self.config = config
@@ -94,6 +98,8 @@ class Task:
         self.plan = Plan(ini, self.canon, self.sequencer)
         self.runner = Runner(self)
         self.supervisor = Supervisor(self)
+        self.results = Results(self, results)
+        operator.also_tell = self.results.tell
         self._waiting: deque[Message] = deque()
         self._expected: Expectation | None = None
 
@@ -118,8 +124,10 @@ class Task:
         self._obey()
         self.operator.serial = self._serial_in_force()
         self.runner.advance()
+        self.results.look()
         self.motion.beat()
         self.status.write(self)
+        self.results.publish()
 
     def _wait_s(self) -> float:
         if self.rcs_status != EXEC and not self.mdi_queue and not self._waiting:
@@ -160,8 +168,8 @@ class Task:
         return ERROR if self.failed else EXEC if self.busy else DONE
 
     def _serial_in_force(self) -> int:
-        """The command that texts of now belong to: that of the program or MDI line, else the last until it is done."""
-        return self.runner.serial or (self.echo if self.busy else 0)
+        """The command that texts of now belong to: of program, MDI line or homing, else the last until it is done."""
+        return self.runner.serial or self.results.homing or (self.echo if self.busy else 0)
 
     # --- Commands
 
@@ -171,7 +179,7 @@ class Task:
 
     def _obey(self) -> None:
         if any(RULES[m.TYPE_ID].urgent(m) for m in self._waiting if m.TYPE_ID in RULES):
-            self._expected = None
+            self._give_up_expectation()
         while self._waiting:
             if self._expected is not None and not self._has_arrived(self._expected):
                 return
@@ -179,26 +187,35 @@ class Task:
         if self._expected is not None:
             self._has_arrived(self._expected)
 
+    def _give_up_expectation(self) -> None:
+        if self._expected is not None:
+            self.results.end(self._expected.serial, Outcome.ABORTED)
+            self._expected = None
+
     def _has_arrived(self, expected: Expectation) -> bool:
         if expected.arrived():
             self._expected = None
+            self.results.end(expected.serial, Outcome.DONE)
             return True
         if clock.host_now() < expected.deadline:
             return False
         self._expected = None
+        self.operator.serial = expected.serial
         self.fail(expected.complaint)
+        self.results.end(expected.serial, Outcome.FAILED)
         return True
 
     def expect(self, arrived: Callable[[], bool], complaint: str, timeout_s: float | None = None) -> None:
         """The command being handled is done when ``arrived`` says so, and fails with ``complaint`` after a while."""
         deadline = clock.host_now() + (timeout_s or self.config.comm_timeout_s)
-        self._expected = Expectation(arrived, deadline, complaint)
+        self._expected = Expectation(arrived, deadline, complaint, self.echo)
 
     def _take(self, message: Message) -> None:
         self.failed = False
         self.command_type = message.TYPE_ID
         if isinstance(message, Command):
             self.echo = self.operator.serial = message.serial_number
+            self.results.begin(message)
         name = type(message).__name__
         rule = RULES.get(message.TYPE_ID)
         try:
@@ -210,6 +227,10 @@ class Task:
             rule.handler(self, message)
         except Refused as refusal:
             self.fail(str(refusal))
+            self.results.end(self.echo, Outcome.REFUSED)
+        else:
+            told_elsewhere = self._expected is not None or self.runner.owns(self.echo)
+            self.results.handled(self.echo, told_elsewhere=told_elsewhere)
 
     def fail(self, text: str) -> None:
         """Tell the operator; the command that was given last has failed."""
@@ -228,5 +249,5 @@ class Task:
 
     def close(self) -> None:
         """Close every channel, remove the pins."""
-        for part in (self.commands, self.motion, self.io, self.status, self.operator, self.pins):
+        for part in (self.results, self.commands, self.motion, self.io, self.status, self.operator, self.pins):
             part.close()

@@ -114,6 +114,7 @@ def _switch_off(task: Task) -> None:
 def left_on(task: Task, state: State) -> None:
     """The machine is no longer on, by order or by itself: nothing may go on."""
     task.motion.send(MotCommand.ABORT)
+    task.results.homing_aborted()
     if task.busy_with_program:
         task.runner.abort(Reason.AUX_ESTOP if state is State.ESTOP else Reason.TASK_STATE_NOT_ON)
     if state is State.ESTOP:

@@ -11,11 +11,13 @@ from typing import Any
 import nml.emc as emc
 from linuxcnc import _constants as const
 from linuxcnc._connection import error, open_channel
+from linuxcnc._results import Outcome, Result, Results
 from nml import clock
 from nml.emc import orders
 from nml.errors import NmlError
 from nml.message import Command
 
+FOREVER = 1e9  # s
 RECEIVE_TIMEOUT = 5.0  # host seconds until task must have taken a command
 TEXT_LENGTH = 254  # characters of an MDI line, a file name or an operator message
 
@@ -71,6 +73,7 @@ class command:
         self._commands = open_channel("emcCommand")
         self._notes = None if self._commands.remote else open_channel(orders.NOTE_BUFFER)
         self._status = open_channel("emcStatus")
+        self._results = Results(self._status)
         self._echo = 0
         self._result = const.RCS_DONE
 
@@ -80,6 +83,7 @@ class command:
         """Write a message and wait until task has taken it."""
         try:
             order = message(**fields)
+            self._results.mark()
             self.serial = self._commands.write(order)
             if self._notes is not None:
                 self._notes.write(orders.note(order, self.serial, self.origin))
@@ -95,17 +99,13 @@ class command:
         while True:
             status = self._status.peek()
             if isinstance(status, emc.EMC_STAT):
-                self._follow(status)
+                self._echo, self._result = status.echo_serial_number, status.status
             ahead = self._echo - self.serial
             if ahead > 0 or (ahead == 0 and (received or self._result != const.RCS_EXEC)):
                 return True
             left = deadline - clock.host_now()
             if left <= 0.0 or not self._status.wait(left):
                 return False
-
-    def _follow(self, status: emc.EMC_STAT) -> None:
-        """Take over what a status says of the last command."""
-        self._echo, self._result = status.echo_serial_number, status.status
 
     def wait_complete(self, timeout: float = 5.0) -> int:
         """Wait for the end of the last command: RCS_DONE, RCS_ERROR, or -1 after ``timeout`` s."""
@@ -116,6 +116,18 @@ class command:
         if not over:
             return -1
         return self._result if self._echo == self.serial else const.RCS_DONE
+
+    def result(self, timeout: float = FOREVER) -> Result | None:
+        """What became of the last command, whatever other clients did meanwhile; None if it is not over in time.
+
+        A LinuxCNC that is reached over a network tells no results: there it is done or failed, as ``wait_complete``.
+        """
+        if (result := self._results.wait(self.serial, timeout)) is not None or self._results.told:
+            return result
+        code = self.wait_complete(timeout)
+        if code == -1:
+            return None
+        return Result(Outcome.DONE if code == const.RCS_DONE else Outcome.FAILED, self.serial, ())
 
     # --- machine ---------------------------------------------------------------------------------------------------
 

@@ -33,10 +33,11 @@ MESSAGES: dict[str, tuple[type[Message], ...]] = {
     "emcmotStatus": (nml.emc.emcmot.EMCMOT_STATUS,),
     "emcmotError": (nml.emc.emcmot.EMCMOT_ERROR,),
     "emcOrders": (nml.emc.EMC_ORDER_NOTE,),
+    "emcResults": (nml.emc.EMC_ORDER_RESULT, nml.emc.EMC_OPERATOR_ERROR),
 }
 """What each buffer of a controller must be able to carry."""
 
-_NATIVE = OWN_BUFFERS - {"toolTable", "emcOrders"}
+_NATIVE = OWN_BUFFERS - {"toolTable", "emcOrders", "emcResults"}
 """Buffers that the servo thread uses without Python: plain C layout in shared memory."""
 
 

@@ -118,6 +118,15 @@ class EMC_TRAJ_TERM_COND(IntEnum):
     BLEND = 2
 
 
+class ORDER_OUTCOME(IntEnum):
+    """What became of a command."""
+
+    DONE = 1
+    REFUSED = 2
+    FAILED = 3
+    ABORTED = 4
+
+
 class EMC_IO_ABORT_REASON_ENUM(IntEnum):
     """Why the I/O controller is told to abort."""
 

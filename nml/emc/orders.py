@@ -1,6 +1,8 @@
-"""Who orders what: a note for each command that a client gives, on the broadcast queue emcOrders, for whoever watches.
+"""Who orders what, and what becomes of it: two broadcast queues beside emcCommand, for whoever watches.
 
-Clients write it beside their command, the NML server for those that come from elsewhere. Nothing depends on it.
+On emcOrders stands a note for each command that a client gives. Clients write it beside their command, the NML server
+for those that come from elsewhere; nothing depends on it. On emcResults task tells of each command how it ended, after
+copies of the operator messages that belong to it.
 """
 
 from __future__ import annotations
@@ -12,9 +14,10 @@ from pathlib import Path
 
 from nml.message import Command, Message, char, double, integer
 
-__all__ = ["EMC_ORDER_NOTE"]
+__all__ = ["EMC_ORDER_NOTE", "EMC_ORDER_RESULT"]
 
 NOTE_BUFFER = "emcOrders"
+RESULT_BUFFER = "emcResults"
 ORIGIN_LENGTH, ORDER_LENGTH = 64, 192
 
 
@@ -26,6 +29,14 @@ class EMC_ORDER_NOTE(Message, type_id=3011):
     time = double(unit="s", doc="since 1970")
     origin = char(ORIGIN_LENGTH, cut=True, doc="program and process, or address of another computer")
     order = char(ORDER_LENGTH, cut=True, doc="the command in words")
+
+
+class EMC_ORDER_RESULT(Message, type_id=3012):
+    """The end of one command; the operator messages that belong to it came before, with its number as id."""
+
+    serial = integer(doc="number of the command in emcCommand")
+    command_type = integer(doc="type number of the command")
+    outcome = integer(doc="ORDER_OUTCOME")
 
 
 def program_name() -> str:

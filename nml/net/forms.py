@@ -18,7 +18,7 @@ from nml.errors import DecodeError
 from nml.message import Message, decode, registry
 from nml.net import xdr_images
 
-BARE_BUFFERS = frozenset({"emcError", "emcOrders"})
+BARE_BUFFERS = frozenset({"emcError", "emcOrders", "emcResults"})
 """Buffers whose messages are encoded without a preamble."""
 
 

@@ -7,7 +7,6 @@ import pytest
 
 import linuxcnc
 from linuxcnc.aio import Machine, Outcome
-from nml.emc import EMC_OPERATOR_ERROR
 from tests.support.fake_task import RCS_DONE, RCS_ERROR, FakeTask
 
 
@@ -22,8 +21,8 @@ class Task(FakeTask):
         status.command_type = command.TYPE_ID
         block = getattr(command, "command", "")
         if "Q" in block:
-            self.errors.write(EMC_OPERATOR_ERROR(id=command.serial_number, error="bad word"))
-            self.errors.write(EMC_OPERATOR_ERROR(id=command.serial_number + 1000, error="of another client"))
+            self.tell_error(command.serial_number, "bad word")
+            self.tell_error(command.serial_number + 1000, "of another client")
             return RCS_ERROR
         if "G4" in block:
             self.began.set()

@@ -91,7 +91,7 @@ def test_a_method_writes_its_message(task, method, arguments, message, fields):
 
 def test_every_public_method_has_a_case_here():
     methods = {name for name in dir(linuxcnc.command) if not name.startswith("_")}
-    assert methods - {"wait_complete", "serial"} == {call[0] for call in CALLS} | {"tool_offset"}
+    assert methods - {"wait_complete", "result", "serial"} == {call[0] for call in CALLS} | {"tool_offset"}
 
 
 def test_a_tool_offset_carries_z_before_x(task):
