@@ -182,7 +182,7 @@ cdef class Flow:
         """A definition that the program runs into: remember it, step over it."""
         if len(self.s.frames) > 1 and self.s.frame.sub:
             fail(self.s, "Nested subroutine definition", at)
-        self.s.subs[label] = (self.source.path, self.source.position, self.source.line, False)
+        self.remember(label, False)
         if self.skip_to(label, ("endsub",)) == -1:
             fail(self.s, "File ended with no percent sign or program end")
 
@@ -344,14 +344,7 @@ cdef class Flow:
         """Be at the first line of a subroutine's body."""
         cdef State s = self.s
         cdef Source source
-        known = s.subs.get(label)
-        if known is not None:
-            path, position, line, numbered = known
-            if fanuc and not numbered:
-                fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
-            if self.source is None or self.source.path != path:
-                self.source = Source(path)
-            self.jump(position, line)
+        if self.known_place(label, fanuc):
             return
         from_line = s.line
         source = self.source
@@ -369,6 +362,33 @@ cdef class Flow:
         if not self.find_here(label, fanuc):
             fail(s, f"EOF in file:{path} seeking o-word: o<{label}> from line: {from_line}")
 
+    def remember(self, str label, bint numbered):
+        """This is where the body of a subroutine begins, as long as its file stays as it is."""
+        cdef Source source = self.source
+        self.s.subs[label] = (source.path, source.version, source.position, source.line, numbered)
+
+    def known_place(self, str label, bint fanuc):
+        """Go where a subroutine was found before; False if it never was, or if its file has been edited since."""
+        cdef State s = self.s
+        cdef Source source = self.source
+        known = s.subs.get(label)
+        if known is None:
+            return False
+        path, version, position, line, numbered = known
+        if source is None or source.path != path:
+            if not os.path.isfile(path):
+                del s.subs[label]
+                return False
+            source = Source(path)
+        if source.version != version:
+            del s.subs[label]
+            return False
+        if fanuc and not numbered:
+            fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
+        self.source = source
+        self.jump(position, line)
+        return True
+
     def find_here(self, str label, bint fanuc):
         """Look for a subroutine from here to the end of the file, then from its beginning."""
         cdef State s = self.s
@@ -381,7 +401,7 @@ cdef class Flow:
                     fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
                 if not fanuc and not found[1]:
                     fail(s, "Fanuc 'O....' subroutine must be called with 'M98'")
-                s.subs[label] = (self.source.path, self.source.position, self.source.line, fanuc)
+                self.remember(label, fanuc)
                 return True
         return False
 

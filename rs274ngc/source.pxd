@@ -12,6 +12,7 @@ cdef class Source:
     cdef public long position   # offset of the next line
     cdef public int line        # number of lines before it
     cdef readonly long bytes    # size of the file
+    cdef readonly tuple version # another one when the file has been edited or replaced
     cdef char[CHUNK] buffer
     cdef int next_line(self, char* out, int capacity) except -3
     cdef bint fill(self, long position) except -1

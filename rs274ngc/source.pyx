@@ -18,7 +18,9 @@ cdef class Source:
             self.fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
             if os.path.isdir(path):
                 raise IsADirectoryError(path)
-            self.bytes = os.fstat(self.fd).st_size
+            facts = os.fstat(self.fd)
+            self.bytes = facts.st_size
+            self.version = (facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtime_ns)
         except OSError:
             raise InterpError(f"Unable to open file <{path}>") from None
 

@@ -191,3 +191,12 @@ def test_python_functions_are_o_word_subroutines_and_predefined_parameters(machi
     )
     typed(interp, "o<double> call [21]", "(debug,#<_value> #<_answer>)")
     assert messages(canon) == ["42.000000 42.000000"]
+
+
+@pytest.mark.parametrize("edit", ["; a line more\n", ""])
+def test_a_subroutine_file_that_was_edited_between_two_calls_is_read_anew(machine, tmp_path, edit):
+    interp, canon = machine(part="(msg,first)")
+    typed(interp, "o<part> call")
+    (tmp_path / "part.ngc").write_text(f"{edit}o<part> sub\n{edit}(msg,second and more)\no<part> endsub\nm2\n")
+    typed(interp, "o<part> call", "o<part> call")
+    assert messages(canon) == ["first", "second and more", "second and more"]
