@@ -180,23 +180,25 @@ class Connection:
         if type(interval) not in (int, float) or not SHORTEST_INTERVAL <= interval <= LONGEST_INTERVAL:
             raise Wrong(f"interval must be {SHORTEST_INTERVAL:g} to {LONGEST_INTERVAL:g} s")
         await self._unsubscribe({"unsubscribe": name})
-        self._subscriptions[name] = asyncio.create_task(self._pass_on(name, float(interval)))
+        channel = open_channel(name)  # now, so that no message is missed that comes from here on
+        task = asyncio.create_task(self._pass_on(name, channel, float(interval)))
+        task.add_done_callback(lambda _: channel.close())
+        self._subscriptions[name] = task
 
     async def _unsubscribe(self, frame: dict[str, Any]) -> None:
         task = self._subscriptions.pop(_buffer(frame["unsubscribe"]), None)
         if task is not None:
             task.cancel()
 
-    async def _pass_on(self, name: str, interval: float) -> None:
+    async def _pass_on(self, name: str, channel: Channel, interval: float) -> None:
         """Send the newest status whenever there is one, or every operator message."""
-        with open_channel(name) as channel:
-            queue = name == "emcError"
-            while True:
-                message = channel.read() if queue else channel.peek()
-                if message is not None:
-                    await self._send_message(name, message)
-                if message is None or not queue:
-                    await asyncio.sleep(ERROR_INTERVAL if queue else interval)
+        queue = name == "emcError"
+        while True:
+            message = channel.read() if queue else channel.peek()
+            if message is not None:
+                await self._send_message(name, message)
+            if message is None or not queue:
+                await asyncio.sleep(ERROR_INTERVAL if queue else interval)
 
     async def _get(self, frame: dict[str, Any]) -> None:
         name = _buffer(frame["get"])

@@ -32,8 +32,9 @@ LONG_EVERY = 4  # statuses from one with the long arrays of inputs and outputs t
 SERIALS_KEPT = 512
 SILENT_AFTER = 1.5  # s without a new status
 PATIENCE = 600.0  # s that an order may take
-LAST_WORDS = 0.06  # s in which the messages of an order that has failed arrive
-SETTLED = 2.0  # s until a state that an order has brought about is seen
+FIRST_WORD = 1.0  # s in which the first message of an order that has failed arrives, also on a busy computer
+LAST_WORDS = 0.06  # s in which the others arrive
+SETTLED = 5.0  # s until a state that an order has brought about is seen; a busy computer takes its time
 
 
 class Lane(enum.Enum):
@@ -76,6 +77,7 @@ class Machine:
         self._own: deque[int] = deque(maxlen=SERIALS_KEPT)  # serial numbers of orders of ours
         self._closely = False
         self._changed = asyncio.Event()
+        self._heard = asyncio.Event()
         self._over = threading.Event()
         self._hurry = threading.Event()
         self._threads = [
@@ -191,7 +193,17 @@ class Machine:
             self._texts.setdefault(serial, []).append(text)
             for old in list(self._texts)[:-100]:
                 del self._texts[old]
+            self._heard.set()
+            self._heard.clear()
         self._on_message(kind, text, serial)
+
+    async def _hear_out(self, serial: int) -> None:
+        """Wait for what task has to say about an order that has failed."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(FIRST_WORD):
+                while serial not in self._texts:
+                    await self._heard.wait()
+        await asyncio.sleep(LAST_WORDS)
 
     # --- orders ----------------------------------------------------------------------------------------------------
 
@@ -227,7 +239,7 @@ class Machine:
             if waiting in self._waiting:
                 self._waiting.remove(waiting)
         if result == linuxcnc.RCS_ERROR:
-            await asyncio.sleep(LAST_WORDS)
+            await self._hear_out(serial)
         self._complain(serial, result)
         return serial
 
