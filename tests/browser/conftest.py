@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.browser.screen import ARTEFACTS, Screen
+from tests.browser.screen import ARTEFACTS, TIMEOUT_MS, Screen
 from tests.support.machine import ROOT
 
 CHROMIUM = os.environ.get("PYEMC_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
@@ -47,13 +47,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.skip(reason=reason))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
-    """One browser for all tests."""
+    """One browser for all tests of this folder; while it is there, no other test could run a loop of asyncio."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS, timeout=TIMEOUT_MS)
         yield browser
         browser.close()
 

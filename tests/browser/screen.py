@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from typing import Any
 
 from tests.support.machine import PATIENCE, ROOT, wait_until
+from tests.support.webclient import WebClient
 
 ARTEFACTS = ROOT / "artefacts" / "browser"
 TABLET = (1280, 800)
@@ -14,11 +16,36 @@ PHONE = (390, 844)
 TIMEOUT_MS = PATIENCE * 1000
 EXPECTED = re.compile(r"WebSocket connection|status of 409")  # a cut network; an upload that asks whether to replace
 GRAPHICS = "GL Driver Message"
+SLOW_JOG = {"jog.linear": "600"}  # mm/min; preferences of a screen whose jogs are far from the limits for half a minute
+PRESS_AGAIN = 2.0  # s without a jog until a button is pressed again
 
 
 def module(text: str) -> Callable[[Any], None]:
     """Answers a request with this JavaScript in place of the server's."""
     return lambda route: route.fulfill(body=text, content_type="text/javascript")
+
+
+def jog_until(
+    reached: Callable[[], object], observer: WebClient, press: Callable[[], object], let_go: Callable[[], object]
+) -> None:
+    """Hold something that jogs until something is so while the machine is being jogged.
+
+    A busy computer may be late with the signs of life, which ends a jog: then it is pressed again.
+    """
+    press()
+    pressed = time.monotonic()
+
+    def there() -> bool:
+        nonlocal pressed
+        if observer.state["jog"]:
+            return bool(reached())
+        if time.monotonic() - pressed > PRESS_AGAIN:
+            let_go()
+            press()
+            pressed = time.monotonic()
+        return False
+
+    wait_until(there, "jogging")
 
 
 class Screen:
@@ -89,6 +116,10 @@ class Screen:
 
     def let_go(self) -> None:
         self.page.mouse.up()
+
+    def hold_until(self, selector: str, reached: Callable[[], object], observer: WebClient) -> None:
+        """Keep a finger on a jog button until something is so; it stays there."""
+        jog_until(reached, observer, lambda: self.hold(selector), self.let_go)
 
     def type_expression(self, text: str) -> None:
         """Type into the field of an open dialog that has the focus, over what stands there."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.browser.screen import SLOW_JOG
 from tests.support.machine import wait_until
 from tests.support.webclient import WebClient, web_mill
 
@@ -35,7 +36,7 @@ def test_the_machine_is_switched_on_and_homed_from_the_header_and_the_manual_pag
 def test_the_e_stop_button_stops_a_machine_in_motion(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.power_up()
-    screen.send_mdi("G1 X250 F1200")
+    screen.send_mdi("G1 X250 F240")
     wait_until(lambda: screen.position("X") > 1, "moving")
     screen.page.click("#estop")
     screen.wait_state("E-stop")
@@ -43,11 +44,10 @@ def test_the_e_stop_button_stops_a_machine_in_motion(mill: int, open_screen: Any
 
 
 def test_a_jog_lasts_as_long_as_the_button_is_held(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    screen = open_screen(mill, preferences=SLOW_JOG)
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
-        screen.hold("[data-jog='X+']")
-        wait_until(lambda: screen.position("X") > 5, "jogging")
+        screen.hold_until("[data-jog='X+']", lambda: screen.position("X") > 5, observer)
         screen.let_go()
         observer.wait(lambda state: not state["jog"] and state["inpos"], "jog ended")
         rest = observer.state["position"][0]

@@ -148,16 +148,19 @@ def test_the_tool_path_shows_the_program_and_finds_a_line(mill: int, open_screen
     screen.open_program("square.ngc")
     screen.page.wait_for_selector(".path-notice[data-state=whole]:has-text('Within the limits')")
     screen.press("View Z")
-    screen.page.wait_for_timeout(300)  # the picture is drawn after the view has changed
-    box = screen.page.locator(".canvas").bounding_box()
-    assert box is not None
-    middle = box["y"] + box["height"] / 2
-    for x in range(int(box["x"]) + 4, int(box["x"] + box["width"]) - 4, 6):
-        screen.page.mouse.click(x, middle)
-        if screen.page.locator(".program-text .line[aria-selected=true]").count():
-            break
-    chosen = screen.page.get_attribute(".program-text .line[aria-selected=true]", "data-line")
-    assert chosen in ("3", "5"), "the sides of the square that cross its middle"
+
+    def chosen() -> str | None:
+        """The line that the first click on something across the middle chooses."""
+        box = screen.page.locator(".canvas").bounding_box()
+        assert box is not None
+        for x in range(int(box["x"]) + 4, int(box["x"] + box["width"]) - 4, 6):
+            screen.page.mouse.click(x, box["y"] + box["height"] / 2)
+            line = screen.page.locator(".program-text .line[aria-selected=true]")
+            if line.count():
+                return line.get_attribute("data-line")
+        return None
+
+    wait_until(lambda: chosen() in ("3", "5"), "one of the sides that cross the middle, once the view is drawn")
 
 
 def test_a_program_that_leaves_the_machine_is_announced_before_it_runs(mill: int, open_screen: Any) -> None:

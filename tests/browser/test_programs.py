@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+import linuxcnc
 from tests.support.machine import wait_until
 from tests.support.webclient import WebClient, web_mill
 
@@ -22,6 +23,7 @@ G1 Y0
 G0 Z5
 M2
 """
+SLOW = "G21 G90\nG1 X60 F120\nM2\n"
 TOOLS = """G21 G90
 T2 M6
 G1 X5 F600
@@ -41,7 +43,7 @@ LONG = 200_000  # lines
 
 @pytest.fixture
 def mill(tmp_path: Path) -> Iterator[int]:
-    with web_mill(tmp_path, square=SQUARE) as (_, port):
+    with web_mill(tmp_path, square=SQUARE, slow=SLOW) as (_, port):
         yield port
 
 
@@ -79,20 +81,20 @@ def test_an_upload_asks_before_it_replaces_a_program(mill: int, open_screen: Any
 def test_a_running_program_is_paused_overridden_resumed_and_aborted(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.power_up()
-    screen.open_program("square.ngc")
+    screen.open_program("slow.ngc")
     with WebClient(mill, name="observer") as observer:
         screen.page.click("#run:enabled")
-        wait_until(lambda: screen.position("X") > 5, "cutting")
+        wait_until(lambda: screen.position("X") > 1, "cutting")
         screen.page.click("#pause:enabled")
         screen.wait_state("Paused")
         observer.wait(lambda state: abs(state["current_vel"]) < 1e-9, "at rest")
         rest = observer.state["position"][0]
-        assert 5 < rest < 60
+        assert 1 < rest < 60
         screen.page.get_by_role("slider", name="Feed", exact=True).fill("0.4")
         observer.wait(lambda state: state["feedrate"] == pytest.approx(0.4), "override")
         screen.page.click("#pause:has-text('Resume')")
         screen.wait_state("Program running")
-        observer.wait(lambda state: state["current_vel"] == pytest.approx(0.4 * 20, rel=0.01), "40 % of F1200")
+        observer.wait(lambda state: state["current_vel"] == pytest.approx(0.4 * 2, rel=0.01), "40 % of F120")
         screen.page.click("#stop")
         screen.wait_state("Ready")
         observer.wait(lambda state: state["interp_state"] == 1 and state["inpos"], "aborted")
@@ -103,12 +105,15 @@ def test_a_program_is_stepped_through(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.power_up()
     screen.open_program("square.ngc")
-    for _ in range(20):
+    status, places = linuxcnc.stat(), []
+    while not places or places[-1][0] < 60.0:
+        assert len(places) < 20, places
+        before = status.echo_serial_number
         screen.page.click("#step:enabled")
-        screen.page.wait_for_selector("#step:enabled")
-        screen.page.wait_for_timeout(400)  # ms; the step's own motion shows itself before the next one is asked for
-        if screen.position("X") > 0.01:
-            break
+        wait_until(lambda before=before: status.poll() or status.echo_serial_number > before, "the step is taken")
+        wait_until(lambda: status.poll() or (status.inpos and status.interp_state == linuxcnc.INTERP_PAUSED), "held")
+        places.append(tuple(round(place, 6) for place in status.position[:3]))
+    assert list(dict.fromkeys(places))[-3:] == [(0.0, 0.0, 5.0), (0.0, 0.0, 0.0), (60.0, 0.0, 0.0)]
     screen.wait_position("X", 60)
     screen.page.click("#stop")
     screen.wait_state("Ready")

@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 from tests.browser.cable import Cable
+from tests.browser.screen import SLOW_JOG, jog_until
 from tests.support.machine import wait_until
 from tests.support.webclient import WebClient, web_mill
 
-LONG_WAY = 60.0  # mm; longer than a jog goes on without signs of life
+LONG_WAY = 10.0  # mm; longer than a slow jog goes on without signs of life
 TOKENS = "operator 0123456789abcdef-operator\nreader 0123456789abcdef-reader\n"
 
 
@@ -20,6 +21,11 @@ TOKENS = "operator 0123456789abcdef-operator\nreader 0123456789abcdef-reader\n"
 def mill(tmp_path: Path) -> Iterator[int]:
     with web_mill(tmp_path) as (_, port):
         yield port
+
+
+def far(observer: WebClient) -> bool:
+    """Whether the jog has gone on for longer than it would without signs of life."""
+    return observer.state["position"][0] > LONG_WAY
 
 
 def jog_ended(observer: WebClient) -> None:
@@ -30,12 +36,10 @@ def jog_ended(observer: WebClient) -> None:
 
 def test_a_jog_stops_when_the_network_is_lost(mill: int, open_screen: Any) -> None:
     cable = Cable(mill)
-    screen = open_screen(cable.port)
+    screen = open_screen(cable.port, preferences=SLOW_JOG)
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
-        screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
-        assert observer.state["jog"], "the signs of life keep it going"
+        screen.hold_until("[data-jog='X+']", lambda: far(observer), observer)
         cable.cut()
         jog_ended(observer)
         screen.page.wait_for_selector("#offline:visible")
@@ -48,28 +52,26 @@ def test_a_jog_stops_when_the_network_is_lost(mill: int, open_screen: Any) -> No
 
 
 def test_a_jog_stops_when_the_window_loses_the_focus(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    screen = open_screen(mill, preferences=SLOW_JOG)
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
-        screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
+        screen.hold_until("[data-jog='X+']", lambda: far(observer), observer)
         screen.page.evaluate("window.dispatchEvent(new Event('blur'))")
         jog_ended(observer)
 
 
 def test_a_jog_stops_when_the_page_is_closed(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    screen = open_screen(mill, preferences=SLOW_JOG)
     screen.power_up()
     with WebClient(mill, name="observer") as observer:
-        screen.hold("[data-jog='X+']")
-        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
+        screen.hold_until("[data-jog='X+']", lambda: far(observer), observer)
         screen.page.close()
         jog_ended(observer)
         observer.wait(lambda state: state["control"] is None, "the controls are free again")
 
 
 def test_keys_jog_only_after_they_were_switched_on_and_stop_when_let_go(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    screen = open_screen(mill, preferences=SLOW_JOG)
     screen.power_up()
     keyboard = screen.page.keyboard
     with WebClient(mill, name="observer") as observer:
@@ -78,9 +80,9 @@ def test_keys_jog_only_after_they_were_switched_on_and_stop_when_let_go(mill: in
         keyboard.up("ArrowRight")
         screen.page.click("#keyboard-jog")
         assert observer.state["position"][0] == 0
-        keyboard.down("ArrowRight")
-        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
-        keyboard.up("ArrowRight")
+        key = "ArrowRight"
+        jog_until(lambda: far(observer), observer, lambda: keyboard.down(key), lambda: keyboard.up(key))
+        keyboard.up(key)
         jog_ended(observer)
         there = observer.state["position"][0]
         screen.page.focus(".spindle input")
@@ -142,7 +144,7 @@ def test_an_abort_from_one_screen_stops_what_another_started(mill: int, open_scr
     first = open_screen(mill)
     first.power_up()
     second = open_screen(mill)
-    first.send_mdi("G1 X250 F1200")
+    first.send_mdi("G1 X250 F240")
     wait_until(lambda: second.position("X") > 2, "moving")
     second.page.click("#stop")
     second.wait_state("Ready")
@@ -150,7 +152,7 @@ def test_an_abort_from_one_screen_stops_what_another_started(mill: int, open_scr
 
 
 def test_a_gamepad_jogs_only_while_its_deadman_button_is_held(mill: int, open_screen: Any) -> None:
-    screen = open_screen(mill)
+    screen = open_screen(mill, preferences=SLOW_JOG)
     screen.page.evaluate("""() => {
       const buttons = Array.from({length: 16}, () => ({pressed: false, value: 0}));
       window.pad = {connected: true, axes: [0, 0, 0, 0], buttons};
@@ -164,7 +166,11 @@ def test_a_gamepad_jogs_only_while_its_deadman_button_is_held(mill: int, open_sc
         screen.wait_position("Y", 1)
         screen.go("manual")
         assert observer.state["position"][0] == 0, "the stick alone does nothing"
-        screen.page.evaluate("window.pad.buttons[4].pressed = true")
-        observer.wait(lambda state: state["position"][0] > LONG_WAY, "jogging")
-        screen.page.evaluate("window.pad.buttons[4].pressed = false")
+        jog_until(lambda: far(observer), observer, lambda: deadman(screen, True), lambda: deadman(screen, False))
+        deadman(screen, False)
         jog_ended(observer)
+
+
+def deadman(screen: Any, held: bool) -> None:
+    """The button of the gamepad without which its sticks do nothing."""
+    screen.page.evaluate(f"window.pad.buttons[4].pressed = {'true' if held else 'false'}")
