@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import stock_machine
+from tests.support.compared import each_time
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -188,6 +189,7 @@ def our_halcmd(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
 
 
+@each_time
 def test_a_limit_switch_stops_the_machine_and_can_be_left_as_with_linuxcnc(tmp_path: Path) -> None:
     theirs = stock_machine.display(PRELUDE + LIMITS)
     ours = stock_machine.ours(tmp_path, PRELUDE + LIMITS)
@@ -195,6 +197,7 @@ def test_a_limit_switch_stops_the_machine_and_can_be_left_as_with_linuxcnc(tmp_p
         assert row == stock_row
 
 
+@each_time
 def test_pins_and_texts_are_those_of_linuxcnc_after_every_step(tmp_path: Path) -> None:
     theirs = stock_machine.display(PRELUDE + SESSION, changes=SHORT)
     ours = stock_machine.ours(tmp_path, PRELUDE + SESSION, changes=SHORT)

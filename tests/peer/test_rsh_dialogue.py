@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import stock_machine
+from tests.support.compared import each_time
 from tests.support.nml_server import free_port
 from tests.support.stock_machine import needs_stock_machine
 
@@ -24,7 +25,7 @@ def start():
     return subprocess.Popen([*RSH, "--port", str(PORT), "--", "-ini", "machine.ini"], stdout=subprocess.DEVNULL)
 
 def connect():
-    end = time.time() + 20
+    end = time.time() + 60
     while True:
         try:
             return socket.create_connection(("127.0.0.1", PORT), 5)
@@ -200,6 +201,7 @@ def said(command: list[str], port: int) -> str:
     return f"{PREPARE}\nRSH = {command!r}\nPORT = {port}\nLINES = {LINES!r}\n{TALK}"
 
 
+@each_time
 def test_every_line_gets_the_stock_servers_reply(tmp_path: Path) -> None:
     theirs = stock_machine.display(said(["/usr/bin/linuxcncrsh"], 5107))
     ours = stock_machine.ours(tmp_path, said([sys.executable, "-m", "gui.linuxcncrsh"], free_port()))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tests.support import stock_machine
+from tests.support.compared import each_time
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -131,6 +132,7 @@ TABLES = {
 
 
 @pytest.mark.parametrize("random", ["0", "1"])
+@each_time
 def test_every_step_of_tool_changes_is_the_same(tmp_path: Path, random: str) -> None:
     script = SCRIPT.replace("TABLE)", f"{TABLES[random]!r})", 1)
     changes = {"TOOL_TABLE =": f"RANDOM_TOOLCHANGER = {random}\nTOOL_TABLE ="}

@@ -27,7 +27,7 @@ SCREEN = f"""#!{sys.executable}
 import sys
 sys.path.insert(0, {str(ROOT)!r})
 import linuxcnc_util
-linuxcnc_util.LinuxCNC().wait_for_linuxcnc_startup(30.0)
+linuxcnc_util.LinuxCNC().wait_for_linuxcnc_startup(60.0)
 """
 WINDOW = r"(gui|vcp|vismach|panelui|delta|max5\w*) exited without becoming ready"
 """A HAL file waits for a program that draws, which takes an X server and libraries of its own."""

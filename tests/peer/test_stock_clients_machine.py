@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.machine import Run, copy_mill, wait_until
+from tests.support.machine import PATIENCE, Run, copy_mill, wait_until
 from tests.support.nml_server import free_port, nml_text
 from tests.support.stock import DRIVE, StockClient, needs_module
 
@@ -85,12 +85,12 @@ do("home", -1); until(lambda: all(s.homed[:3])); out.append(s.homed[:4])
 do("mode", linuxcnc.MODE_MANUAL); do("teleop_enable", 0)
 c.jog(linuxcnc.JOG_CONTINUOUS, True, 0, 5.0); until(lambda: s.joint_position[0] > 0.5)
 out.append(s.joint_position[0])
-c.jog(linuxcnc.JOG_STOP, True, 0); time.sleep(0.5); s.poll(); at = s.joint_position[0]
+c.jog(linuxcnc.JOG_STOP, True, 0); until(lambda: s.inpos); at = s.joint_position[0]
 time.sleep(0.2); s.poll(); out.append(s.joint_position[0] == at)
 do("mode", linuxcnc.MODE_MDI)
 out.append([do("mdi", "G21 G90 G0 X5 Y2 Z1"), s.task_mode]); out.append(s.position[:3])
 out.append(do("mdi", "G1 X1"))
-until(lambda: True); out.append(e.poll())
+heard = []; until(lambda: heard.append(e.poll()) or heard[-1]); out.append(heard[-1])
 """
     )
     assert state == [1, 1, 2, 1, 4]
@@ -116,7 +116,7 @@ lines = set()
 c.auto(linuxcnc.AUTO_RUN, 0)
 until(lambda: s.interp_state != linuxcnc.INTERP_IDLE)
 until(lambda: lines.add(s.motion_line) or s.interp_state == linuxcnc.INTERP_IDLE)
-out.append(c.wait_complete(20)); s.poll(); out.append(s.position[:3]); out.append(sorted(lines)); out.append(e.poll())
+out.append(c.wait_complete(60)); s.poll(); out.append(s.position[:3]); out.append(sorted(lines)); out.append(e.poll())
 """
     )
     assert opened == [1, str(program)]
@@ -134,10 +134,10 @@ def test_the_stock_module_pauses_resumes_and_aborts_a_program(machine: Machine) 
         + f"""
 ready(); do("mode", linuxcnc.MODE_AUTO); do("program_open", {str(program)!r})
 c.auto(linuxcnc.AUTO_RUN, 0); until(lambda: s.position[0] > 1)
-c.auto(linuxcnc.AUTO_PAUSE); until(lambda: s.paused); time.sleep(0.5); s.poll(); at = s.position[0]
+c.auto(linuxcnc.AUTO_PAUSE); until(lambda: s.paused and s.current_vel == 0); at = s.position[0]
 time.sleep(0.3); s.poll(); out.append(s.position[0] == at)
 c.auto(linuxcnc.AUTO_RESUME); until(lambda: s.position[0] > at + 1); out.append(True)
-c.abort(); until(lambda: s.interp_state == linuxcnc.INTERP_IDLE); time.sleep(0.5); s.poll(); out.append(s.position[0])
+c.abort(); until(lambda: s.interp_state == linuxcnc.INTERP_IDLE and s.inpos); out.append(s.position[0])
 """
     )
     assert paused
@@ -149,17 +149,17 @@ class Telnet:
     """A line-by-line talk with one of LinuxCNC's text servers."""
 
     def __init__(self, port: int) -> None:
-        deadline = time.monotonic() + 20.0
+        deadline = time.monotonic() + PATIENCE
         while True:
             try:
-                self._sock = socket.create_connection(("127.0.0.1", port), 5.0)
+                self._sock = socket.create_connection(("127.0.0.1", port), PATIENCE)
                 break
             except OSError:
                 assert time.monotonic() < deadline, "the program does not listen"
                 time.sleep(0.05)
-        self._sock.settimeout(5.0)
+        self._sock.settimeout(PATIENCE)
 
-    def say(self, line: str, expected: str = "", seconds: float = 20.0) -> str:
+    def say(self, line: str, expected: str = "", seconds: float = PATIENCE) -> str:
         """Send a line, again until the answer contains ``expected``; the answer."""
         deadline = time.monotonic() + seconds
         while True:
@@ -213,7 +213,7 @@ def test_the_stock_linuxcncrsh_drives_the_machine(machine: Machine) -> None:
     talk.say("get abs_act_pos", "3.000000 4.000000 1.000000")
     talk.close()
     process.terminate()
-    process.wait(10)
+    process.wait(PATIENCE)
 
 
 @pytest.mark.skipif(not Path("/usr/bin/schedrmt").exists(), reason="Debian's schedrmt is not installed")
@@ -222,4 +222,4 @@ def test_the_stock_scheduler_connects(machine: Machine) -> None:
     assert "QMODE" in talk.say("get qmode", "QMODE")
     talk.close()
     process.terminate()
-    process.wait(10)
+    process.wait(PATIENCE)

@@ -21,10 +21,10 @@ DRIVE = """
 s = linuxcnc.stat(); s.poll(); c = linuxcnc.command(); e = linuxcnc.error_channel()
 def do(name, *args):
     getattr(c, name)(*args)
-    result = c.wait_complete(20)
+    result = c.wait_complete(60)
     s.poll()
     return result
-def until(condition, seconds=20):
+def until(condition, seconds=60):
     end = time.monotonic() + seconds
     s.poll()
     while not condition():
@@ -70,7 +70,7 @@ class StockClient:
             text=True,
         )
 
-    def run(self, script: str, seconds: float = 60.0) -> list[Any]:
+    def run(self, script: str, seconds: float = 300.0) -> list[Any]:
         """What the script put into ``out``."""
         process = self.start(script)
         text, _ = process.communicate(timeout=seconds)

@@ -131,7 +131,7 @@ _REASON = reason_to_skip()
 needs_stock_machine = pytest.mark.skipif(_REASON is not None, reason=_REASON or "")
 
 
-def display(script: str, *, changes: dict[str, str] | None = None, seconds: float = 120.0) -> list[Any]:
+def display(script: str, *, changes: dict[str, str] | None = None, seconds: float = 300.0) -> list[Any]:
     """Run ``script`` with Debian's Python as the display of a stock machine: what it put into the list ``out``.
 
     ``changes``: pieces of the INI file and what stands in their place.
@@ -140,8 +140,9 @@ def display(script: str, *, changes: dict[str, str] | None = None, seconds: floa
     return _run(wait, "", seconds, _as_display(script, "/usr/bin/python3"), changes or {})
 
 
-def ours(folder: Path, script: str, *, changes: dict[str, str] | None = None, seconds: float = 120.0) -> list[Any]:
-    """The same script with our Python as the display of a machine of ours with the same files, in ``folder``."""
+def ours(folder: Path, script: str, *, changes: dict[str, str] | None = None, seconds: float = 300.0) -> list[Any]:
+    """The same script with our Python as the display of a machine of ours with the same files, below ``folder``."""
+    folder = Path(tempfile.mkdtemp(dir=folder))
     _write(folder, _as_display(script, sys.executable), changes or {})
     (folder / "server.nml").write_text(re.sub(r"TCP=\d+ xdr", "", Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()))
     done = subprocess.run(
@@ -163,7 +164,7 @@ def _as_display(script: str, python: str) -> str:
     return text + "open('out.json', 'w').write(json.dumps(out))\nopen('over', 'w').close()\n"
 
 
-def session(script: str, options: str = "", seconds: float = 120.0, status: str = "") -> list[Any]:
+def session(script: str, options: str = "", seconds: float = 300.0, status: str = "") -> list[Any]:
     """Run ``script`` with our Python beside a stock machine: what it put into the list ``out``.
 
     ``options``: of the clients' process lines; ``status``: of the line of emcStatus.
