@@ -1,15 +1,13 @@
 """A whole machine driven by its clients: the Python interface and linuxcncrsh, alone and at once."""
 
-import statistics
 import subprocess
 import sys
-import time
 
 import pytest
 
 import linuxcnc
 from nml import namespace
-from tests.support.machine import ROOT, RshClient, copy_mill, running, traces, wait_until
+from tests.support.machine import PATIENCE, ROOT, RshClient, copy_mill, running, traces, wait_until
 
 pytestmark = pytest.mark.process
 
@@ -38,29 +36,26 @@ def test_a_machine_goes_through_its_states(mill):
     status, command = linuxcnc.stat(), linuxcnc.command()
     assert (status.task_state, status.estop) == (linuxcnc.STATE_ESTOP, 1)
     command.state(linuxcnc.STATE_ESTOP_RESET)
-    wait_until(lambda: status.poll() or status.task_state == linuxcnc.STATE_ESTOP_RESET, "reset")
-    assert status.estop == 0
+    wait_until(lambda: status.poll() or (status.task_state, status.estop) == (linuxcnc.STATE_ESTOP_RESET, 0), "reset")
     command.state(linuxcnc.STATE_ON)
     wait_until(lambda: status.poll() or status.enabled, "on")
     command.state(linuxcnc.STATE_ESTOP)
     wait_until(lambda: status.poll() or (status.estop and not status.enabled), "E-stop")
 
 
-def test_mdi_moves_the_machine_and_its_round_trip_is_short(mill):
+def test_mdi_moves_the_machine_and_is_done_when_it_says_so(mill):
     status, command = ready()
     command.mode(linuxcnc.MODE_MDI)
     command.wait_complete()
     command.mdi("G21 G90 G0 X10 Y-5 Z2")
-    assert command.wait_complete() == linuxcnc.RCS_DONE
+    assert command.wait_complete(PATIENCE) == linuxcnc.RCS_DONE
     status.poll()
     assert status.position[:3] == pytest.approx((10.0, -5.0, 2.0))
-    times = []
     for number in range(50):
-        begin = time.perf_counter()
-        command.mdi(f"M64 P{number % 2}")
-        assert command.wait_complete() == linuxcnc.RCS_DONE
-        times.append(time.perf_counter() - begin)
-    assert statistics.median(times) < 0.1  # a watchdog; the benchmark measures
+        command.mdi(f"G0 X{number % 2}")
+        assert command.wait_complete(PATIENCE) == linuxcnc.RCS_DONE
+        status.poll()
+        assert status.position[0] == pytest.approx(number % 2)
 
 
 def test_jogging_moves_a_joint_by_the_increment(mill):
@@ -79,7 +74,7 @@ def test_jogging_moves_a_joint_by_the_increment(mill):
 def test_a_program_is_paused_stepped_resumed_and_aborted(mill, tmp_path):
     status, command = ready()
     part = tmp_path / "part.ngc"
-    part.write_text("G21 G90 G94 G61\n" + "\n".join(f"G1 X{x} F3000" for x in range(1, 200)) + "\nM2\n")
+    part.write_text("G21 G90 G94 G61\n" + "\n".join(f"G1 X{x} F60" for x in range(1, 200)) + "\nM2\n")
     command.mode(linuxcnc.MODE_AUTO)
     command.wait_complete()
     command.program_open(str(part))
@@ -103,11 +98,10 @@ def test_the_feed_override_scales_the_feed(mill):
     command.mode(linuxcnc.MODE_MDI)
     command.wait_complete()
     command.feedrate(0.5)
-    command.mdi("G21 G90 G94 G1 X100 F6000")
-    wait_until(lambda: status.poll() or status.current_vel > 49.0, "cruise")
-    assert status.current_vel == pytest.approx(50.0, abs=0.01)
+    command.mdi("G21 G90 G94 G1 X100 F60")
+    wait_until(lambda: status.poll() or status.current_vel == pytest.approx(0.5, abs=1e-4), "half the feed")
     command.feedrate(1.0)
-    wait_until(lambda: status.poll() or status.current_vel > 99.0, "full feed")
+    wait_until(lambda: status.poll() or status.current_vel == pytest.approx(1.0, abs=1e-4), "full feed")
     command.abort()
     command.wait_complete()
 
@@ -116,7 +110,7 @@ def test_a_refused_command_comes_with_its_message(mill):
     command, errors = linuxcnc.command(), linuxcnc.error_channel()
     command.mode(linuxcnc.MODE_MDI)
     command.mdi("G0 X1")
-    assert command.wait_complete() == linuxcnc.RCS_ERROR
+    assert command.wait_complete(PATIENCE) == linuxcnc.RCS_ERROR
     wait_until(lambda: errors.wait(0.0), "message")
     kind, text = errors.poll()
     assert kind == linuxcnc.OPERATOR_ERROR
@@ -136,8 +130,8 @@ def test_the_main_job_over_linuxcncrsh(mill, tmp_path):
         assert client.ask("get program") == f"PROGRAM {part}"
         assert client.ask("set run") == "SET RUN ACK"
         assert client.ask("get program_status") == "PROGRAM_STATUS IDLE"
-        positions = [float(word) for word in client.ask("get abs_act_pos").split()[1:4]]
-        assert positions == pytest.approx([12.5, -7.0, 0.0], abs=1e-6)
+        end = pytest.approx([12.5, -7.0, 0.0], abs=1e-6)
+        wait_until(lambda: [float(word) for word in client.ask("get abs_act_pos").split()[1:4]] == end, "at the end")
         assert client.ask("get error") == "ERROR OK"
 
 
@@ -184,7 +178,7 @@ def test_two_machines_run_side_by_side(tmp_path, monkeypatch):
             _, command = ready()
             command.mode(linuxcnc.MODE_MDI)
             command.mdi(f"G21 G90 G0 X{target}")
-            assert command.wait_complete() == linuxcnc.RCS_DONE
+            assert command.wait_complete(PATIENCE) == linuxcnc.RCS_DONE
         for name, target in zip(names, (5.0, 7.0), strict=True):
             monkeypatch.setenv(namespace.VARIABLE, name)
             assert linuxcnc.stat().position[0] == pytest.approx(target)

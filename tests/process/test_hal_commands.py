@@ -73,10 +73,11 @@ def test_waiting_for_programs(own_namespace: str, tmp_path: Path) -> None:
     python = sys.executable
     component = tmp_path / "comp.py"
     component.write_text(
-        "import hal, time\nc = hal.component('comp')\nc.newpin('x', hal.HAL_S32, hal.HAL_OUT)\nc['x'] = 3\n"
-        "time.sleep(0.1)\nc.ready()\ntime.sleep(0.2)\nc.exit()\n"
+        "import hal, os, time\nc = hal.component('comp')\nc.newpin('x', hal.HAL_S32, hal.HAL_OUT)\nc['x'] = 3\n"
+        "time.sleep(0.1)\nc.ready()\nwhile not os.path.exists('seen'): time.sleep(0.01)\nc.exit()\n"
     )
-    done = script(tmp_path, f"loadusr -Wn comp {python} {component}\ngetp comp.x\nwaitusr comp\nshow pin comp\n")
+    lines = f"loadusr -Wn comp {python} {component}\ngetp comp.x\nloadusr -w touch seen\nwaitusr comp\nshow pin comp\n"
+    done = script(tmp_path, lines)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("3\n")
     assert "comp.x" not in done.stdout

@@ -28,11 +28,11 @@ c.newpin("out", hal.HAL_FLOAT, hal.HAL_OUT, safe=-1.0)
 c.ready()
 c["out"] = 5.0
 print("ready", flush=True)
-time.sleep(60)
+time.sleep(600)
 """
 
 
-def until(condition: Callable[[], object], seconds: float = 10.0) -> None:
+def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
     """Wait for something that must happen; the bound only ends a hung test."""
     end = time.monotonic() + seconds
     while not condition():
@@ -62,12 +62,12 @@ def test_a_killed_user_component_is_removed_and_its_pins_are_safe(session: tuple
     assert child.stdout is not None
     assert child.stdout.readline() == "ready\n"
     hal.net("s", ["victim.out"])
-    assert hal.value("s") == 5.0
+    until(lambda: hal.value("s") == 5.0)
     child.kill()
     child.wait()
     child.stdout.close()
     until(lambda: hal.segment.find_comp("victim") is None)  # the host sees to it
-    assert hal.value("s") == -1.0
+    until(lambda: hal.value("s") == -1.0)
 
 
 def test_a_killed_host_is_noticed_and_another_can_start(session: tuple[Hal, HostClient]) -> None:

@@ -3,10 +3,11 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from tests.support.machine import ROOT, Run, copy_mill, traces, wait_until
+from tests.support.machine import ROOT, Run, copy_mill, processes, running, traces, wait_until
 
 pytestmark = pytest.mark.process
 
@@ -41,6 +42,19 @@ def test_the_machine_runs_without_an_application_that_is_missing_or_fails(tmp_pa
     assert run.finish() == 0, run.errors
     assert "[APPLICATIONS]APP = nosuchprogram -x: no such program; the machine goes on without it" in run.errors
     assert "broken" in run.errors
+
+
+def test_every_process_is_listed_under_its_own_name_and_command_line(tmp_path):
+    ini = copy_mill(tmp_path)
+    with running(ini) as run:
+        run.port()
+        listed = {}
+        for pid, command in processes():
+            listed[Path(f"/proc/{pid}/comm").read_text().strip()] = command.strip()
+    for name in ("milltask", "io", "linuxcncrsh"):
+        assert listed[name].startswith(f"{name} -ini /")
+    assert listed["linuxcnc-guard"] == "linuxcnc-guard"
+    assert "hal.host" in listed["hal.host"]
 
 
 def test_applications_end_with_the_machine(tmp_path):

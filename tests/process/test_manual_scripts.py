@@ -36,7 +36,7 @@ c.state(linuxcnc.STATE_ESTOP_RESET)
 c.state(linuxcnc.STATE_ON)
 c.wait_complete()
 c.home(-1)
-end = time.time() + 20
+end = time.time() + 60
 while not ok_for_mdi():
     assert time.time() < end
     time.sleep(0.01)

@@ -9,7 +9,7 @@ import pytest
 
 import linuxcnc
 from linuxcnc.aio import Machine, Outcome, Result
-from tests.support.machine import copy_mill, running, wait_until
+from tests.support.machine import PATIENCE, copy_mill, running, wait_until
 
 pytestmark = pytest.mark.process
 
@@ -47,7 +47,7 @@ def test_a_move_that_is_cut_short_by_somebody_else_is_aborted(mill):
     async def cut():
         async with Machine() as one, Machine() as other:
             dwell = asyncio.create_task(one.mdi("G4 P600"))
-            await one.until(lambda status: status.delay_left > 0.0, 20.0)
+            await one.until(lambda status: status.delay_left > 0.0, PATIENCE)
             return await other.abort(), await dwell
 
     abort, dwell = asyncio.run(cut())

@@ -15,7 +15,7 @@ def pause(status, command):
 
 def test_a_paused_program_is_run_back_to_its_start_and_on_to_its_end(tmp_path):
     part = tmp_path / "part.ngc"
-    part.write_text("G21 G90 G94 G64 P0.01 F3000\nG1 X100\nG1 Y50\nG2 X50 Y0 I-50\nG1 X20\nM2\n")
+    part.write_text("G21 G90 G94 G64 P0.01 F300\nG1 X5\nG1 Y100\nG2 X-95 Y0 I-100 F6000\nG1 X20\nM2\n")
     with running(copy_mill(tmp_path), speed=4.0) as run:
         run.port()
         status, command = linuxcnc.stat(), linuxcnc.command()
@@ -28,7 +28,7 @@ def test_a_paused_program_is_run_back_to_its_start_and_on_to_its_end(tmp_path):
         command.wait_complete()
         command.program_open(str(part))
         command.auto(linuxcnc.AUTO_RUN, 0)
-        wait_until(lambda: status.poll() or status.position[1] > 5.0, "second move")
+        wait_until(lambda: status.poll() or status.position[1] > 2.0, "second move")
         pause(status, command)
         command.auto(linuxcnc.AUTO_REVERSE)
         command.auto(linuxcnc.AUTO_RESUME)

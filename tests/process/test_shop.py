@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import linuxcnc
-from tests.support.machine import Run, copy_mill, running, traces, wait_until
+from tests.support.machine import PATIENCE, Run, copy_mill, running, traces, wait_until
 from tests.support.nml_server import free_port
 
 paho = pytest.importorskip("paho.mqtt.client", reason="paho-mqtt is not installed")
@@ -44,7 +44,7 @@ class Broker:
 
     def stop(self) -> None:
         self._process.terminate()
-        self._process.wait(10)
+        self._process.wait(PATIENCE)
 
 
 class Reader:
@@ -118,7 +118,8 @@ def test_the_broker_holds_the_state_and_learns_of_the_end(tmp_path: Path, broker
         assert json.loads(reader.values["shop/mill/message"])["text"] == "coolant is low"
         late = Reader(broker.port)
         late.wait("shop/mill/status/axes", "XYZ")
-        assert {"shop/mill/online", "shop/mill/status/state", "shop/mill/status/position/actual"} <= late.retained
+        topics = {"shop/mill/online", "shop/mill/status/state", "shop/mill/status/position/actual"}
+        wait_until(lambda: topics <= late.retained, f"retained, not {late.retained}")
         assert "shop/mill/message" not in late.values
         late.close()
     reader.wait("shop/mill/online", 0)
@@ -170,7 +171,9 @@ async def _read_as_a_client(endpoint: str, run: Run) -> None:
         def node(name: str) -> asyncua.Node:
             return client.get_node(f"ns={index};s=sim-mill-mm/{name}")
 
-        assert await node("state").read_value() == "estop"
+        async with asyncio.timeout(PATIENCE):
+            while await node("state").read_value() != "estop":
+                await asyncio.sleep(0.05)
         assert await node("axes").read_value() == "XYZ"
         assert await node("position/actual").read_value() == [0.0, 0.0, 0.0]
         assert (await node("velocity").read_description()).Text == "along the path, units/s"
@@ -195,13 +198,13 @@ class Changes:
         self._seen.put_nowait(value)
 
     async def wait(self, value: object) -> None:
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(PATIENCE):
             while await self._seen.get() != value:
                 pass
 
 
 async def _connected(endpoint: str) -> asyncua.Client:
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(PATIENCE):
         while True:
             client = asyncua.Client(endpoint)
             try:

@@ -24,16 +24,16 @@ sys.path.insert(0, {str(ROOT)!r})
 import linuxcnc, linuxcnc_util
 
 machine = linuxcnc_util.LinuxCNC()
-machine.wait_for_linuxcnc_startup()
+machine.wait_for_linuxcnc_startup(60.0)
 c, s = machine.command, machine.status
 c.state(linuxcnc.STATE_ESTOP_RESET)
 c.state(linuxcnc.STATE_ON)
 c.home(-1)
 s.poll()
-machine.wait_for_home([1] * s.joints)
+machine.wait_for_home([1] * s.joints, 60.0)
 c.mode(linuxcnc.MODE_MDI)
 c.mdi("G90 G0 X0.5")
-c.wait_complete()
+c.wait_complete(60.0)
 s.poll()
 sys.exit(0 if abs(s.position[0] - 0.5) < 1e-6 else 7)
 """

@@ -57,7 +57,7 @@ def test_an_abort_ends_every_kind_of_wait_and_the_machine_goes_on(desk, block, w
     "setting", [{"changes": {"RS274NGC.PARAMETER_FILE": "mill_mm.var\nON_ABORT_COMMAND = G53 G0 Z7"}}]
 )
 def test_the_abort_command_runs_after_an_abort_but_not_after_a_refused_start(desk):
-    desk.program("G21 G90 F600\nT1 M6\nG1 X100\nG1 X0\nM2\n")
+    desk.program("G21 G90 F120\nT1 M6\nG1 X100\nG1 X0\nM2\n")
     assert desk.do(desk.command.mode, linuxcnc.MODE_MDI) == DONE
     assert desk.mdi("T2 M6") == DONE
     assert desk.do(desk.command.mode, linuxcnc.MODE_AUTO) == DONE

@@ -9,6 +9,7 @@ import pytest
 
 import linuxcnc
 from tests.support.desk import DONE, Desk, at_desk
+from tests.support.machine import PATIENCE
 
 pytestmark = pytest.mark.process
 
@@ -77,11 +78,11 @@ def test_a_line_that_is_wrong_at_once_changes_nothing_but_drops_those_behind_it(
     for line in ("M8", "M3 S100", "G43 H1", "G55"):
         assert desk.mdi(line) == DONE
     before = (desk.stat.flood, desk.stat.spindle[0]["speed"], desk.stat.gcodes[3:], desk.stat.mcodes[2:])
-    desk.command.mdi("G4 P0.2")
+    desk.command.mdi("G4 P15")  # long enough for the two behind it to arrive
     desk.command.mdi("bad")
     desk.command.mdi("G53 G0 X50")
     desk.until(lambda s: desk.texts and s.queued_mdi_commands == 0 and s.interp_state == 1, "the refusal")
-    assert desk.command.wait_complete(10.0) == linuxcnc.RCS_ERROR
+    assert desk.command.wait_complete(PATIENCE) == linuxcnc.RCS_ERROR
     status = desk.look()
     assert (status.flood, status.spindle[0]["speed"], status.gcodes[3:], status.mcodes[2:]) == before
     assert status.position[0] == 0.0

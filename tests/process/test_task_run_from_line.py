@@ -9,8 +9,12 @@ import pytest
 
 import linuxcnc
 from tests.support.desk import DONE, ERROR, Desk, at_desk
+from tests.support.machine import PATIENCE
+from tests.support.recorder import hal_text, recorded
 
 pytestmark = pytest.mark.process
+
+NEAR = 1e-6  # mm
 
 PART = """\
 G21 G90 G94 G17 G61
@@ -19,7 +23,7 @@ G10 L2 P2 X10 Y20 Z0
 G55
 M3 S1000
 M8
-F6000
+F120
 G0 Z5
 G0 X0 Y0
 G1 Z-1
@@ -55,34 +59,34 @@ def test_the_state_of_the_line_is_in_force_when_it_begins(desk):
     desk.program(PART)
     desk.texts.clear()
     desk.command.auto(linuxcnc.AUTO_RUN, 12)
-    desk.until(lambda s: s.motion_line == 12 and s.current_vel > 0, "the line runs")
+    desk.until(lambda s: s.motion_line == 12 and s.current_vel > 0 and s.flood == 1, "the line runs")
     status = desk.stat
     assert status.g5x_index == 2
     assert status.g5x_offset[:3] == (10.0, 20.0, 0.0)
     assert status.tool_offset[2] == 1.0
     assert {210, 900, 550, 170}.issubset(status.gcodes)
-    assert (status.spindle[0]["direction"], status.spindle[0]["speed"], status.flood) == (1, 1000.0, 1)
-    assert status.settings[1] == 6000.0
-    assert desk.command.wait_complete(30.0) == DONE, desk.texts
+    assert (status.spindle[0]["direction"], status.spindle[0]["speed"]) == (1, 1000.0)
+    assert status.settings[1] == 120.0
+    assert desk.command.wait_complete(PATIENCE) == DONE, desk.texts
     text = " ".join(desk.texts)
     assert text.startswith("run from line 12: G21; G90; G55")
     assert "spindle 0 forward S1000 (was off); flood on" in text
     assert place(desk) == (30.0, 50.0, 0.0)
 
 
-def test_the_tool_goes_up_across_and_down_before_the_line(desk):
-    assert desk.mdi("T1 M6") == DONE
-    assert desk.mdi("G21 G90 G53 G0 X100 Y100 Z-20") == DONE
-    desk.program(PART)
-    desk.command.auto(linuxcnc.AUTO_RUN, 12)
-    seen = []
-    while not seen or desk.look().interp_state != linuxcnc.INTERP_IDLE:
-        seen.append(place(desk))
-    assert desk.command.wait_complete(30.0) == DONE
+def test_the_tool_goes_up_across_and_down_before_the_line(tmp_path):
+    data = tmp_path / "commands.bin"
+    with at_desk(tmp_path, hal=hal_text(data)) as desk:
+        desk.ready(linuxcnc.MODE_MDI)
+        assert desk.mdi("T1 M6") == DONE
+        assert desk.mdi("G21 G90 G53 G0 X100 Y100 Z-20") == DONE
+        before = len(recorded(data))
+        assert run_from(desk, 12) == DONE, desk.texts
+        seen = recorded(data)[before:]
     top = 5.0 + 1.0  # the program's highest Z, with the tool's offset
-    across = [z for x, y, z in seen if 30.0 < x < 100.0]
-    assert across
-    assert min(across) == max(across) == top
+    across = seen[(seen[:, 0] > 30.0 + NEAR) & (seen[:, 0] < 100.0 - NEAR), 2]
+    assert len(across) > 100
+    assert across == pytest.approx(top, abs=NEAR)
 
 
 def test_a_start_with_another_tool_is_refused_and_nothing_moves_or_turns(desk):

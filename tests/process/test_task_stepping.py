@@ -6,6 +6,7 @@ import pytest
 
 import linuxcnc
 from tests.support.desk import DONE, at_desk
+from tests.support.machine import PATIENCE
 
 pytestmark = pytest.mark.process
 
@@ -41,7 +42,7 @@ def test_steps_go_through_loops_and_subroutines_block_by_block(tmp_path):
             serial = status.echo_serial_number
             desk.command.auto(linuxcnc.AUTO_STEP)
             desk.until(lambda s, before=serial: s.echo_serial_number > before, "the step is taken")
-        assert desk.command.wait_complete(10.0) == DONE
+        assert desk.command.wait_complete(PATIENCE) == DONE
         places = list(dict.fromkeys(place[:2] for place in stops))
         assert places == [(0, 0), (5, 0), (5, 5), (10, 5), (10, 10), (15, 10), (15, 15)]
         assert {level for x, y, level in stops if x > y} == {1}, "behind the subroutine's move"

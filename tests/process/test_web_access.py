@@ -12,7 +12,7 @@ import aiohttp
 import msgpack
 import pytest
 
-from tests.support.machine import MILL, wait_until
+from tests.support.machine import MILL, PATIENCE, wait_until
 from tests.support.webclient import Refused, WebClient, web_mill
 
 pytestmark = pytest.mark.process
@@ -39,7 +39,7 @@ def guarded(tmp_path):
 
 def ask(port, method, path, body=None, **headers):
     """(status, headers, body) of one HTTP request."""
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
     connection.request(method, path, body, {name.replace("_", "-"): value for name, value in headers.items()})
     answer = connection.getresponse()
     found = answer.status, dict(answer.getheaders()), answer.read()
@@ -56,7 +56,7 @@ def first_close(port, *frames, text=False, origin=None):
         async with aiohttp.ClientSession() as session, session.ws_connect(f"{base}/ws", headers=headers) as socket:
             for frame in frames:
                 await (socket.send_str(frame) if text else socket.send_bytes(frame))
-            while (message := await socket.receive(20)).type is aiohttp.WSMsgType.BINARY:
+            while (message := await socket.receive(PATIENCE)).type is aiohttp.WSMsgType.BINARY:
                 pass
             return message.data if message.type is aiohttp.WSMsgType.CLOSE else socket.close_code
 
@@ -84,7 +84,7 @@ def test_frames_that_make_no_sense_end_the_connection(mill):
     for frames in BAD_FRAMES:
         assert first_close(mill.web, *frames) in (1007, 1008), frames
     with WebClient(mill.web) as page:
-        assert page.state["machine"] == "ok"
+        page.wait(lambda state: state.get("machine") == "ok", "the machine is there")
 
 
 def test_frames_that_are_too_long_or_text_end_the_connection(mill):
@@ -177,7 +177,7 @@ def test_an_upload_that_is_too_large_leaves_nothing_behind(tmp_path):
 
 def test_two_operators_share_one_set_of_controls(mill):
     with WebClient(mill.web, name="anna") as anna, WebClient(mill.web, name="bert") as bert:
-        anna.call("control.take")
+        anna.take()
         bert.wait(lambda state: state["control"] and state["control"]["name"] == "anna", "seen")
         with pytest.raises(Refused, match="anna"):
             bert.call("machine.estop_reset")
@@ -222,7 +222,7 @@ def test_fifty_readers_see_the_machine_move(mill):
             page.call("mdi.run", text="G0 X10")
             for reader in readers:
                 reader.wait(at_ten, "seen")
-            assert len(page.state["clients"]) == READERS + 1
+            page.wait(lambda state: len(state["clients"]) == READERS + 1, "all are there")
     finally:
         for reader in readers:
             reader.__exit__()
@@ -278,7 +278,7 @@ def test_with_a_certificate_everything_is_encrypted(tmp_path):
     extra = "[WEB]\nTOKEN_FILE = tokens\nTLS_CERTIFICATE = cert.pem\nTLS_KEY = key.pem"
     with web_mill(tmp_path, extra=extra) as (run, port):
         trusted = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
-        connection = http.client.HTTPSConnection("localhost", port, timeout=20, context=trusted)
+        connection = http.client.HTTPSConnection("localhost", port, timeout=PATIENCE, context=trusted)
         connection.request("GET", "/health")
         assert json.loads(connection.getresponse().read()) == {"machine": "ok"}
         with pytest.raises((http.client.HTTPException, OSError)):

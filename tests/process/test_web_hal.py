@@ -8,7 +8,7 @@ import pytest
 
 import hal
 from nml import namespace
-from tests.support.machine import wait_until
+from tests.support.machine import PATIENCE, wait_until
 from tests.support.webclient import Refused, WebClient, shared_web_mill
 
 pytestmark = pytest.mark.process
@@ -49,8 +49,23 @@ def shown(page, kind):
     return [frame for frame in page.frames if frame["t"] == kind]
 
 
+def start_scope(page, **order):
+    """Start a scope; that of the page before may still be about to end."""
+
+    def started():
+        try:
+            page.call("scope.start", **order)
+        except Refused as refused:
+            if refused.code != "busy":
+                raise
+            return False
+        return True
+
+    wait_until(started, "the scope is free")
+
+
 def halcmd(*words):
-    subprocess.run([sys.executable, "-P", "-m", "hal.halcmd", *words], check=True, timeout=30)
+    subprocess.run([sys.executable, "-P", "-m", "hal.halcmd", *words], check=True, timeout=PATIENCE)
 
 
 def test_the_tree_shows_what_there_is_and_filters_it(page):
@@ -77,7 +92,7 @@ def test_values_are_set_by_the_operator_in_control_and_nobody_else(page):
     with pytest.raises(Refused) as refused:
         page.call("hal.set", name="lamp", value=True)
     assert refused.value.code == "controls"
-    page.call("control.take")
+    page.take()
     page.call("hal.set", name="lamp", value=True)
     assert page.call("hal.tree", filter="lamp")["items"][0]["value"] is True
     with pytest.raises(Refused, match="drives it"):
@@ -98,7 +113,7 @@ def test_the_scope_triggers_in_the_servo_period_of_the_event(page):
     page.ready()
     page.call("mdi.run", text="G0 X0")
     pin = "joint.0.pos-cmd"
-    page.call("scope.start", pins=[pin, "joint.0.vel-cmd"], samples=400, trigger={"pin": pin, "level": 5.0}, before=100)
+    start_scope(page, pins=[pin, "joint.0.vel-cmd"], samples=400, trigger={"pin": pin, "level": 5.0}, before=100)
     page.call("mdi.run", text="G1 F600 X20")
     page.wait(lambda _: shown(page, "scope"), "record")
     record = shown(page, "scope")[0]
@@ -108,26 +123,18 @@ def test_the_scope_triggers_in_the_servo_period_of_the_event(page):
 
 
 def test_a_scope_of_something_that_is_not_there_says_so(page):
-    page.call("scope.start", pins=["no.such"])
+    start_scope(page, pins=["no.such"])
     page.wait(lambda _: shown(page, "scope"), "answer")
     assert "no.such" in shown(page, "scope")[0]["text"]
 
 
 def test_one_scope_at_a_time_and_it_ends_with_its_client(page):
     with WebClient(int(page.base.rpartition(":")[2])) as other:
-        other.call("scope.start", pins=["joint.0.vel-cmd"], repeat=True)
+        start_scope(other, pins=["joint.0.vel-cmd"], repeat=True)
         with pytest.raises(Refused) as refused:
             page.call("scope.start", pins=["joint.0.vel-cmd"])
         assert refused.value.code == "busy"
-
-    def free():
-        try:
-            page.call("scope.start", pins=["joint.0.vel-cmd"], samples=10)
-        except Refused:
-            return False
-        return True
-
-    wait_until(free, "the scope is free")
+    start_scope(page, pins=["joint.0.vel-cmd"], samples=10)
 
 
 def test_processes_buffers_and_threads_are_shown(page):
@@ -138,7 +145,7 @@ def test_processes_buffers_and_threads_are_shown(page):
 
 
 def test_a_question_of_a_pin_is_answered_by_the_operator(page):
-    page.call("control.take")
+    page.take()
     halcmd("setp", "web.door", "1")
     page.wait(lambda state: state["dialogs"], "asked")
     dialog = page.state["dialogs"][0]
@@ -146,14 +153,17 @@ def test_a_question_of_a_pin_is_answered_by_the_operator(page):
     assert hal.get_value("web.door-waiting") is True
     page.call("dialog.answer", id=dialog["id"], answer=True)
     page.wait(lambda state: not state["dialogs"], "closed")
-    assert (hal.get_value("web.door-response"), hal.get_value("web.door")) == (True, False)
+    wait_until(lambda: hal.get_value("web.door-response") is True and hal.get_value("web.door") is False, "answered")
 
 
 def test_a_number_chooses_among_many_messages(page):
-    page.call("control.take")
+    page.take()
     halcmd("setp", "web.VFD", "3")
     page.wait(lambda state: state["dialogs"], "asked")
-    assert page.state["dialogs"][0]["text"] == "Too hot"
+    dialog = page.state["dialogs"][0]
+    assert dialog["text"] == "Too hot"
+    page.call("dialog.answer", id=dialog["id"], answer=True)
+    page.wait(lambda state: not state["dialogs"], "closed")
 
 
 def test_a_manual_tool_change_waits_for_the_operator(page):
@@ -163,7 +173,7 @@ def test_a_manual_tool_change_waits_for_the_operator(page):
     page.wait(lambda state: state["toolchange"] or change.done(), "asked")
     assert not change.done(), change.exception()
     assert page.state["toolchange"]["tool"] == 3
-    assert page.state["tool_in_spindle"] == 0
+    assert page.state["tool_in_spindle"] != 3
     page.call("toolchange.confirm")
-    change.result(20)
+    change.result(PATIENCE)
     page.wait(lambda state: state["tool_in_spindle"] == 3 and state["toolchange"] is None, "changed")

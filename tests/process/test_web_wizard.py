@@ -12,7 +12,7 @@ import pytest
 
 from gui.web.wizard import make, samples
 from nml.errors import ConfigError
-from tests.support.machine import ROOT, Run, processes, traces, wait_until
+from tests.support.machine import PATIENCE, ROOT, Run, processes, traces, wait_until
 from tests.support.webclient import Refused, WebClient
 
 pytestmark = pytest.mark.process
@@ -91,7 +91,7 @@ def wizard(home):
         yield int(address.rstrip("/\n").rpartition(":")[2])
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(PATIENCE)
         process.stdout.close()
 
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import linuxcnc
-from tests.support.machine import copy_mill, running, wait_until
+from tests.support.machine import PATIENCE, copy_mill, running, wait_until
 
 SPEED = 5.0
 DONE, ERROR = linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR
@@ -22,7 +22,7 @@ class Desk:
         self.stat, self.command, self.errors = linuxcnc.stat(), linuxcnc.command(), linuxcnc.error_channel()
         self.texts: list[str] = []
 
-    def do(self, method, *arguments, timeout: float = 30.0) -> int:
+    def do(self, method, *arguments, timeout: float = PATIENCE) -> int:
         """Give a command and wait for its end."""
         method(*arguments)
         result = self.command.wait_complete(timeout)

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGED_NML = ROOT / "nml" / "linuxcnc.nml"
 MILL = ROOT / "configs" / "sim" / "mill"
 PROGRAMS = ROOT / "configs" / "sim" / "nc_files"
-PATIENCE = 30.0  # s; a watchdog, not a claim about speed
+PATIENCE = 60.0  # s; a watchdog, not a claim about speed
 
 
 def wait_until(condition: Callable[[], object], what: str, timeout: float = PATIENCE) -> None:
@@ -128,7 +128,7 @@ def running(ini: Path, *options: str, speed: float = 1.0) -> Iterator[Run]:
         if run.process.poll() is None:
             run.process.send_signal(signal.SIGTERM)
             try:
-                run.finish(30.0)
+                run.finish(PATIENCE)
             except subprocess.TimeoutExpired:
                 run.process.kill()
                 run.finish()

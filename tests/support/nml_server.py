@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import pty
+import random
 import re
 import select
 import signal
@@ -21,15 +23,26 @@ from nml.config import DEFAULT_FILE, NmlConfig
 from nml.net import wire
 
 SOURCE = Path(__file__).parents[2]
-STARTED_WITHIN = 20.0
+STARTED_WITHIN = 60.0
 LOOPBACK = "127.0.0.1"
+PORTS = range(10_000, 32_000)  # below those that the kernel gives to clients, of which some tests start thousands
+
+
+def _candidates() -> Iterator[int]:
+    """All ports again and again; each process of a test run begins elsewhere."""
+    first = random.SystemRandom().randrange(len(PORTS))
+    yield from itertools.cycle((*PORTS[first:], *PORTS[:first]))
+
+
+_next_port = _candidates()
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
-    """A port of the loopback address that nobody uses."""
-    with socket.socket(socket.AF_INET, kind) as sock:
-        sock.bind(("127.0.0.1", 0))
-        return sock.getsockname()[1]
+    """A port of the loopback address that nobody uses and no other test of this process was given."""
+    while True:
+        with contextlib.suppress(OSError), socket.socket(socket.AF_INET, kind) as sock:
+            sock.bind((LOOPBACK, port := next(_next_port)))
+            return port
 
 
 def _tcp_accepts(host: str, port: int) -> bool:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import shutil
 import threading
 import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +139,32 @@ class WebClient:
         """Wait until the state fulfils a condition."""
         wait_until(lambda: condition(self.state), what, timeout)
 
+    def take(self) -> None:
+        """Take the controls; the page before may still be about to let go of them."""
+        self.wait(lambda state: state["control"] is None or state["control"]["name"] == self.name, "controls are free")
+        self.call("control.take")
+
+    def jog_until(self, reached: Callable[[], object], velocity: float, **target: Any) -> int:
+        """Jog with the button held until something is so; the number of the jog.
+
+        A busy computer may be late with the signs of life, which ends a jog: then the button is pressed again.
+        """
+        jog = 0
+
+        def there() -> bool:
+            nonlocal jog
+            if reached():
+                return True
+            if all(one["jog"] != jog for one in self.state["jog"]):
+                self.let_go(jog)
+                with contextlib.suppress(Refused):  # it has begun, and the status does not show it yet
+                    jog = self.call("jog.start", velocity=velocity, **target)["jog"]
+                    self.hold(jog)
+            return False
+
+        wait_until(there, "jogged")
+        return jog
+
     def hold(self, jog: int) -> None:
         """Keep the jog button down."""
         self._beating.add(jog)
@@ -161,7 +187,7 @@ class WebClient:
 
     def ready(self) -> None:
         """Take the controls, switch on, home what is not homed, and stand still."""
-        self.call("control.take")
+        self.take()
         self.call("machine.estop_reset")
         self.call("machine.power", on=True)
         if not self.state["all_homed"]:
@@ -181,7 +207,7 @@ class WebClient:
             return answer.status
 
 
-@contextmanager
+@contextlib.contextmanager
 def web_mill(
     folder: Path,
     *,
@@ -211,7 +237,7 @@ def web_mill(
         yield run, web_port(run)
 
 
-@contextmanager
+@contextlib.contextmanager
 def shared_web_mill(folder: Path, **options: Any) -> Iterator[tuple[str, int]]:
     """A mill for all tests of a file, (namespace, port); each test enters the namespace by `monkeypatch`."""
     name = f"shared{os.getpid()}-{uuid.uuid4().hex[:8]}"

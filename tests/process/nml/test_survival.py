@@ -164,7 +164,7 @@ def test_no_reader_ever_sees_a_torn_status_when_writers_die(config: NmlConfig):
     final = Channel(config, "status", "a")
     final.raw.write(bytes([7]) * status_size)
     before = seen[0]
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 60.0
     while seen[0] == before and time.monotonic() < deadline:
         final.raw.write(bytes([8]) * status_size)
         time.sleep(0.001)
@@ -235,7 +235,7 @@ def test_a_stopped_holder_delays_others_no_longer_than_their_timeout(config: Nml
 
 
 def wait_for(notes: Notes) -> None:
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 60.0
     while not notes[0]:
         assert time.monotonic() < deadline, "the child did not start"
         time.sleep(0.001)
