@@ -5,4 +5,5 @@ from libc.stddef cimport size_t
 from emcmot._messages cimport EMCMOT_COMMAND
 from emcmot.state cimport Motion
 
+cdef void sign_of_life(Motion* m) noexcept nogil
 cdef void run(Motion* m, const EMCMOT_COMMAND* c, size_t size) noexcept nogil

@@ -260,7 +260,7 @@ cdef int check_numbers(Motion* m, const EMCMOT_COMMAND* c, int needs) noexcept n
 cdef int check_state(Motion* m, const EMCMOT_COMMAND* c, int needs) noexcept nogil:
     """0, or the status of the refusal."""
     cdef int bad = MotCommandStatus_INVALID_COMMAND
-    if needs & ENABLED and not (m.enabled and m.enable_wanted):
+    if needs & ENABLED and (not (m.enabled and m.enable_wanted) or m.task_lost):
         return refuse(m, c.command, b"motion is not enabled", bad)
     if needs & STILL_OFF and (m.enabled or m.enable_wanted):
         return refuse(m, c.command, b"motion must be disabled", bad)
@@ -299,21 +299,36 @@ cdef int checked(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     return bad if bad else execute(m, c, entry)
 
 
+cdef void sign_of_life(Motion* m) noexcept nogil:
+    """Task is there. Once it was missed the machine is switched off all the same."""
+    m.last_command = m.host_now
+    if not m.enabled:
+        m.task_lost = 0
+
+
+cdef void sign_texts(Motion* m, int first, int serial) noexcept nogil:
+    """Mark the texts from the first one on as those of a command."""
+    cdef int n
+    for n in range(first, m.error_count):
+        m.errors[n].echo_serial_number = serial
+
+
 cdef void run(Motion* m, const EMCMOT_COMMAND* c, size_t size) noexcept nogil:
     """Take one command record of ``size`` bytes."""
+    cdef int texts = m.error_count
     if size != sizeof(EMCMOT_COMMAND) or c.nml_type != EMCMOT_COMMAND_TYPE:
         m.command_status = MotCommandStatus_UNKNOWN_COMMAND
         snprintf(report(m), TEXT_SIZE, b"motion refused a record of %zu bytes that is no command", size)
         return
-    m.last_command = m.host_now
-    m.task_lost = 0
+    sign_of_life(m)
     m.command_echo = c.command
     m.command_num_echo = c.serial_number
     if not 0 < c.command < MAX_CODE or TABLE[c.command].handler == NULL:
         m.command_status = MotCommandStatus_UNKNOWN_COMMAND
         snprintf(report(m), TEXT_SIZE, b"unknown motion command %d", c.command)
-        return
-    m.command_status = checked(m, c)
+    else:
+        m.command_status = checked(m, c)
+    sign_texts(m, texts, c.serial_number)
 
 
 cdef char* kept(str text) except? NULL:

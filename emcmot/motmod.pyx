@@ -5,19 +5,19 @@ publishes the status. Both are native and never wait: commands, status and error
 of the NML buffers.
 """
 
-from libc.stdint cimport int32_t, int64_t, uintptr_t
+from libc.stdint cimport int32_t, int64_t, uint64_t, uintptr_t
 from libc.stdlib cimport calloc, free
 from libc.string cimport memmove
 from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 
 from emcmot._messages cimport EMCMOT_COMMAND, EMCMOT_ERROR, EMCMOT_STATUS
-from emcmot.commands cimport run
+from emcmot.commands cimport run, sign_of_life
 from emcmot.controller cimport controller
 from emcmot.core cimport Core
 from emcmot.kins.kinematics cimport KinematicsModule
 from emcmot.state cimport Motion
 from hal.cell cimport hal_at, hal_cell, hal_pin
-from nml._shm cimport queue_pop, queue_push, slot_write
+from nml._shm cimport pulse_count, queue_pop, queue_push, slot_write
 
 from emcmot.core import LIMITS
 from emcmot.layout import same_size
@@ -28,6 +28,7 @@ from nml.errors import HalError
 same_size(__name__, "Motion", sizeof(Motion))
 
 cdef int COMMANDS_PER_PERIOD = 256
+cdef int64_t LONGEST_STEP = 10_000_000  # ns that count between two periods: a host that was held up held task up as well
 cdef int64_t COMMAND_SHARE = 4     # the handler stops taking commands after this part of a period
 
 NAME_LISTS = ("names_din", "names_dout", "names_ain", "names_aout", "names_misc_errors")
@@ -67,6 +68,8 @@ ctypedef struct Servo:   # everything that the two functions touch
     Binding* both
     int both_count
     int64_t last_ns
+    int64_t handled_ns   # when commands were taken last
+    uint64_t pulse       # task's sign of life seen last
     EMCMOT_COMMAND record
 
 
@@ -135,7 +138,12 @@ cdef void command_handler(void* arg, long period_ns) noexcept nogil:
     cdef int taken = 0
     cdef size_t size
     cdef int64_t start = now_ns()
-    s.m.host_now = start * 1e-9
+    cdef uint64_t pulse = pulse_count(s.commands)
+    s.m.host_now += min(start - s.handled_ns, LONGEST_STEP) * 1e-9
+    s.handled_ns = start
+    if pulse != s.pulse:
+        s.pulse = pulse
+        sign_of_life(s.m)
     while taken < COMMANDS_PER_PERIOD and (taken & 15 or now_ns() - start < period_ns // COMMAND_SHARE):
         size = queue_pop(s.commands, &s.record, sizeof(EMCMOT_COMMAND))
         if size == 0:
@@ -186,7 +194,7 @@ cdef class Motmod(Core):
         self.servo.commands = <void*><uintptr_t>addresses[0]
         self.servo.status = <void*><uintptr_t>addresses[1]
         self.servo.errors = <void*><uintptr_t>addresses[2]
-        self.servo.last_ns = now_ns()
+        self.servo.last_ns = self.servo.handled_ns = now_ns()
 
     def disconnect(self):
         for channel in self.channels:

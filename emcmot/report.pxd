@@ -15,6 +15,7 @@ cdef inline char* report(Motion* m, int joint=-1, long move_id=0) noexcept nogil
         m.error_count += 1
     slot.nml_type = EMCMOT_ERROR_TYPE
     slot.nml_size = sizeof(EMCMOT_ERROR)
+    slot.echo_serial_number = 0
     slot.kind = KIND_ERROR
     slot.joint = joint
     slot.id = move_id

@@ -18,7 +18,7 @@ from nml.inifile import IniFile
 AXES = "XYZABCUVW"
 UNLIMITED = 1e99
 LINEAR, ANGULAR = 1, 2
-DEFAULT_HEARTBEAT_S = 0.5
+DEFAULT_HEARTBEAT_S = 0.1
 
 LENGTH_UNITS = {
     "mm": 1.0,

@@ -12,7 +12,6 @@ from collections import deque
 from typing import Any
 
 from emctask.layout import Span, image
-from nml import clock
 from nml.channel import Channel
 from nml.emc.emcmot import (
     EMCMOT_COMMAND,
@@ -23,12 +22,14 @@ from nml.emc.emcmot import (
     MotionFlag,
     MotionState,
 )
+from nml.pulse import Pulse
 
 MOVE = Span(EMCMOT_COMMAND, "command", "tolerance")
 """command, joint, axis, spindle, id, pos (9), center (3), normal (3), turn, motion_type, vel, ini_maxvel, acc, jerk,
 termCond, mode, tolerance."""
 
 BEATS = 5  # signs of life within the time that motion waits for one
+HUNG_S = 0.5  # host time without a cycle after which task gives no more signs of life
 DEAD_S = 0.85  # host time without a new status after which motion counts as gone
 RESERVE = 10  # places of the planner's queue that task leaves free
 
@@ -49,8 +50,7 @@ class MotionClient:
         self._blank = bytes(self._command.data)
         self._in_flight: deque[int] = deque()
         self._sent = 0
-        """The last command that somebody waits for: a sign of life is not."""
-        self._last_sent_at = clock.host_now()
+        self._pulse = Pulse(commands, watchdog_s / BEATS, HUNG_S)
         self._refused = 0
         self.known = False
 
@@ -169,18 +169,15 @@ class MotionClient:
         self._in_flight.append(self._write())
 
     def _write(self) -> int:
-        serial = self._commands.write(self._command)
-        self._last_sent_at = clock.host_now()
-        if self._command.command != MotCommand.HEARTBEAT:
-            self._sent = serial
-        return serial
+        self._sent = self._commands.write(self._command)
+        return self._sent
 
     def beat(self) -> None:
-        """Tell motion that task is alive, if nothing else did lately."""
-        if clock.host_now() - self._last_sent_at >= self.watchdog_s / BEATS:
-            self.send(MotCommand.HEARTBEAT)
+        """Task's cycle goes round: the thread that tells motion so may go on."""
+        self._pulse.turn()
 
     def close(self) -> None:
         """Close the channels."""
+        self._pulse.close()
         for channel in (self._commands, self._status, self._errors):
             channel.close()

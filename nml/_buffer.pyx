@@ -73,6 +73,12 @@ cdef class Buffer:
         return self.head.kind
 
     @property
+    def pulse(self) -> int:
+        """Signs of life of the process that writes the buffer (``nml.pulse``)."""
+        self.check_open()
+        return nml_load(&self.head.pulse)
+
+    @property
     def write_counter(self) -> int:
         """Messages ever written."""
         self.check_open()

@@ -39,6 +39,7 @@ ctypedef struct Head:
     uint64_t head[2]        # queue: where the oldest record starts, for an even and for an odd read counter
     uint64_t seen           # highest number that a reader has taken
     uint64_t shared_id      # broadcast: number of the last record taken by the readers that share one cursor
+    uint64_t pulse          # counted up by a writer that lives (nml.pulse)
     pthread_mutex_t write_lock
     pthread_mutex_t read_lock
 
@@ -75,6 +76,7 @@ cdef extern from * nogil:
 
     #define nml_load(p) __atomic_load_n((p), __ATOMIC_ACQUIRE)
     #define nml_store(p, v) __atomic_store_n((p), (v), __ATOMIC_RELEASE)
+    #define nml_count(p) __atomic_add_fetch((p), 1, __ATOMIC_RELEASE)
     #define nml_fence() __atomic_thread_fence(__ATOMIC_SEQ_CST)
 
     static void nml_store_max(uint64_t *p, uint64_t v) {
@@ -114,6 +116,7 @@ cdef extern from * nogil:
     uint64_t nml_load(uint64_t* p)
     uint32_t nml_load32 "nml_load"(uint32_t* p)
     void nml_store(uint64_t* p, uint64_t v)
+    uint64_t nml_count(uint64_t* p)
     void nml_fence()
     void nml_store_max(uint64_t* p, uint64_t v)
     void nml_wake(uint32_t* word, uint32_t* waiters)

@@ -13,6 +13,7 @@ cdef size_t queue_pop(void* buffer, void* dst, size_t capacity) noexcept nogil
 cdef int queue_push(void* buffer, const void* src, size_t size) noexcept nogil
 cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil
 cdef uint64_t write_count(void* buffer) noexcept nogil
+cdef uint64_t pulse_count(void* buffer) noexcept nogil
 
 # What they are made of; for nml._buffer, which holds the lock of the side that it is on.
 cdef int queue_append(Head* head, const void* src, size_t size, int64_t writer) noexcept nogil

@@ -23,7 +23,7 @@ from nml._layout cimport *
 
 from nml.errors import BufferError_
 
-LAYOUT_VERSION = 0x4C4D4E_0003
+LAYOUT_VERSION = 0x4C4D4E_0004
 cdef uint64_t VERSION = LAYOUT_VERSION
 
 SLOT, QUEUE, BROADCAST = KIND_SLOT, KIND_QUEUE, KIND_BROADCAST
@@ -47,6 +47,11 @@ cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil:
 cdef uint64_t write_count(void* buffer) noexcept nogil:
     """Messages ever written to the buffer."""
     return nml_load(&(<Head*>buffer).write_counter)
+
+
+cdef uint64_t pulse_count(void* buffer) noexcept nogil:
+    """Signs of life of the buffer's writer; see ``nml.pulse``."""
+    return nml_load(&(<Head*>buffer).pulse)
 
 
 cdef void ring_commit(Head* head, uint64_t number, uint64_t tail) noexcept nogil:

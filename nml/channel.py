@@ -78,6 +78,11 @@ class Channel:
         return self.raw.address
 
     @property
+    def pulse(self) -> int:
+        """Signs of life of the process that writes the buffer (``nml.pulse``)."""
+        return self.raw.pulse
+
+    @property
     def write_counter(self) -> int:
         """Messages ever written to the buffer."""
         return self.raw.write_counter

@@ -76,7 +76,10 @@ def test_motion_alone_notices_that_task_is_dead_or_halted(tmp_path, blow):
         run.process.send_signal(signal.SIGCONT)
         assert run.finish() == 1
     last_moved = np.flatnonzero(np.diff(samples, axis=0).any(axis=1))[-1]
-    noticed, stopping = (DEFAULT_HEARTBEAT_S + RECORDER_LAG_S) * SPEED / PERIOD, max(VELOCITY) / min(ACCELERATION) / PERIOD
+    noticed, stopping = (
+        (DEFAULT_HEARTBEAT_S + RECORDER_LAG_S) * SPEED / PERIOD,
+        max(VELOCITY) / min(ACCELERATION) / PERIOD,
+    )
     assert before < last_moved < before + CATCHING_UP * noticed + stopping
     assert not verify.limits_exceeded(samples, PERIOD, VELOCITY, ACCELERATION)
     assert traces() == []
