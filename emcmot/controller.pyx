@@ -54,6 +54,9 @@ cdef int TYPE_TRAVERSE = 1
 cdef int TYPE_FEED = 2
 cdef int TYPE_ARC = 3
 
+cdef int FEEDBACK_PERIODS = 1   # from a command to the read-back of the motor that has followed it
+cdef double STILL = 1e-9        # lu or deg: a joint that moves less in a period stands (iterative kinematics)
+
 
 cdef void watch_task(Motion* m) noexcept nogil:
     """Without a command or heartbeat for too long nobody is in charge: stop, and switch off at rest."""
@@ -177,6 +180,7 @@ cdef void move_free(Motion* m) noexcept nogil:
             joint.free.target = joint.pos_fb
             joint.free.vel_limit = joint.vel_limit
             joint.free.acc_limit = joint.acc_limit
+            joint.free.jerk_limit = 0.0
             joint.free.enabled = 1
         free_planner_step(&joint.free, m.dt)
         joint.coarse_pos = joint.free.pos
@@ -289,6 +293,28 @@ cdef void write_pins(Motion* m) noexcept nogil:
     m.feed_ips = m.feed_ipm / 60.0
 
 
+cdef int has_moved(const Motion* m) noexcept nogil:
+    """Whether a motor that is on got another command than in the period before."""
+    cdef int n
+    for n in range(m.num_joints):
+        if fabs(m.joint[n].vel_cmd) * m.dt > STILL or m.joint[n].correction.active:
+            return 1
+    return 0
+
+
+cdef void judge_rest(Motion* m) noexcept nogil:
+    """In position is who stands, and has stood for so long that the feedback of this period is that of the end."""
+    cdef int rest = resting(m)
+    if rest:
+        m.stopping = 0
+    if not rest or (has_moved(m) and not m.tracking):
+        m.settling = max(m.settling, FEEDBACK_PERIODS)
+        m.at_rest = 0
+        return
+    m.at_rest = m.settling == 0
+    m.settling -= m.settling > 0
+
+
 cdef void controller(Motion* m) noexcept nogil:
     m.heartbeat += 1
     tp_get_status(m.tp, &m.tp_status)
@@ -309,10 +335,7 @@ cdef void controller(Motion* m) noexcept nogil:
     write_queued_outputs(m)
     if m.kins.ways > 1:
         switch_kinematics(m)
-    m.at_rest = resting(m) and m.settling == 0
-    m.settling -= m.settling > 0
-    if m.at_rest:
-        m.stopping = 0
+    judge_rest(m)
     end_jogs(m)
     write_joints(m)
     write_pins(m)

@@ -38,6 +38,7 @@ cdef void follow(Motion* m, Axis* axis, int allowed) noexcept nogil:
     axis.eoffset.target = target
     axis.eoffset.vel_limit = axis.eoffset_vel_limit
     axis.eoffset.acc_limit = axis.eoffset_acc_limit
+    axis.eoffset.jerk_limit = axis.eoffset_jerk_limit
     axis.eoffset.enabled = allowed
     free_planner_step(&axis.eoffset, m.dt)
 

@@ -8,6 +8,7 @@ A failure is reported with joint, state and reason, and ends the sequence of the
 from libc.math cimport fabs
 from libc.stdio cimport snprintf
 
+from emcmot.joint cimport limit_own_moves
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Joint, Motion
 
@@ -39,7 +40,7 @@ cdef void go(Motion* m, Joint* joint, double vel, double distance) noexcept nogi
     """Start a move by ``distance``, whose sign is that of ``vel``."""
     joint.free.target = joint.free.pos + (distance if vel > 0.0 else -distance)
     joint.free.vel_limit = fabs(vel) if fabs(vel) < joint.vel_limit else joint.vel_limit
-    joint.free.acc_limit = joint.acc_limit
+    limit_own_moves(joint, 1.0)
     joint.free.enabled = 1
     joint.free.active = 1
 
@@ -352,25 +353,43 @@ cdef void home_all(Motion* m) noexcept nogil:
     m.home_all = 1
 
 
-cdef void start_joints(Motion* m) noexcept nogil:
-    """Start the joints of this step, or of the next step that has any."""
-    cdef int n, found
-    cdef Joint* joint
-    while m.home_sequence < FIRST_EXCLUDED_SEQUENCE:
-        found = 0
-        for n in range(m.num_joints):
-            joint = &m.joint[n]
-            if in_sequence(joint, m.home_sequence):
-                found = 1
-                if joint.home.state == HOME_IDLE:
-                    joint.free.enabled = 0
-                    joint.home.homing = 1
-                    joint.home.state = HOME_START
-        if found:
-            m.home_step = SEQUENCE_WAIT_JOINTS
+cdef int count_in_sequence(const Motion* m, int sequence) noexcept nogil:
+    cdef int n
+    cdef int found = 0
+    for n in range(m.num_joints):
+        found += in_sequence(&m.joint[n], sequence)
+    return found
+
+
+cdef void report_gap(Motion* m) noexcept nogil:
+    """Name the first joint that a missing number keeps from being homed, if there is one."""
+    cdef int n
+    for n in range(m.num_joints):
+        if m.joint[n].active and m.home_sequence < abs(m.joint[n].home.sequence) < FIRST_EXCLUDED_SEQUENCE:
+            snprintf(
+                report(m, n), TEXT_SIZE, b"Joint %d is not homed with the others: no joint has HOME_SEQUENCE %d", n,
+                m.home_sequence,
+            )
             return
-        m.home_sequence += 1
-    m.home_step = SEQUENCE_IDLE
+
+
+cdef void start_joints(Motion* m) noexcept nogil:
+    """Start the joints of this step. The first one may be empty; at any other gap the sequence ends."""
+    cdef int n
+    cdef Joint* joint
+    if m.home_sequence == 0 and count_in_sequence(m, 0) == 0:
+        m.home_sequence = 1
+    if count_in_sequence(m, m.home_sequence) == 0:
+        m.home_step = SEQUENCE_IDLE
+        report_gap(m)
+        return
+    m.home_step = SEQUENCE_WAIT_JOINTS
+    for n in range(m.num_joints):
+        joint = &m.joint[n]
+        if in_sequence(joint, m.home_sequence) and joint.home.state == HOME_IDLE:
+            joint.free.enabled = 0
+            joint.home.homing = 1
+            joint.home.state = HOME_START
 
 
 cdef void wait_joints(Motion* m) noexcept nogil:

@@ -9,11 +9,11 @@ from libc.math cimport fabs
 from libc.stdio cimport snprintf
 
 from emcmot._messages cimport Enables_FS, MAX_AXES, MotionState_FREE, MotionState_TELEOP
-from emcmot.free_planner cimport FreePlanner, free_planner_stop_point
-from emcmot.joint cimport jog_bounds
+from emcmot.free_planner cimport FreePlanner, free_planner_stop_point, free_planner_stopping_way
+from emcmot.joint cimport jog_bounds, limit_own_moves
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
-from emcmot.world cimport AXIS_NAMES
+from emcmot.world cimport AXIS_NAMES, limit_axis_moves
 
 from emcmot.layout import same_size
 
@@ -90,7 +90,7 @@ cdef int jog_joint(Motion* m, int number, int kind, double vel, double offset) n
         )
         return -1
     joint.jog_vel = fabs(vel)
-    joint.free.acc_limit = joint.acc_limit
+    limit_own_moves(joint, 1.0)
     joint.kb_jog = 1
     joint.wheel_jog = 0
     m.overriding_jog = m.override_limits != 0
@@ -153,7 +153,7 @@ cdef int jog_axis(Motion* m, int number, int kind, double vel, double offset) no
         )
         return -1
     axis.jog_vel = fabs(vel)
-    axis.teleop.acc_limit = axis.acc_net
+    limit_axis_moves(axis, 1.0)
     axis.kb_jog = 1
     axis.wheel_jog = 0
     m.overriding_jog = m.override_limits != 0
@@ -187,7 +187,7 @@ cdef void turn(FreePlanner* p, double way, int velocity_mode, double low, double
     cdef double lead
     cdef double target = (p.target if p.enabled else free_planner_stop_point(p, dt)) + way
     if velocity_mode:
-        lead = p.vel_limit * p.vel_limit / (2.0 * p.acc_limit)
+        lead = free_planner_stopping_way(p)
         target = within(target, p.pos - lead, p.pos + lead)
     if target > high:
         target = high if p.pos <= high else p.pos
@@ -203,26 +203,40 @@ cdef double fraction(double value) noexcept nogil:
     return value if 0.0 < value <= 1.0 else 1.0
 
 
+cdef int may_wheel_jog_joint(Motion* m, Joint* joint, int number) noexcept nogil:
+    """1, or 0 with a report, once, of what speaks against it."""
+    if joint.home.sequence < 0:
+        if not joint.wheel_refused:
+            snprintf(
+                report(m, number), TEXT_SIZE, b"Cannot wheel jog joint %d because home_sequence synchronized (%d)", number,
+                joint.home.sequence,
+            )
+        return 0
+    if locks_an_axis(m, number):
+        if not joint.wheel_refused:
+            snprintf(report(m, number), TEXT_SIZE, b"Can't wheel jog locking joint_num=%d", number)
+        return 0
+    return 1
+
+
 cdef void joint_wheel(Motion* m, Joint* joint, int number, int homing) noexcept nogil:
     cdef double low, high
     cdef int counts = joint.jog_counts - joint.wheel_counts
     joint.wheel_counts = joint.jog_counts
     if counts == 0 or not joint.jog_enable or m.mode != MotionState_FREE or homing:
         return
-    if not m.enabled or m.jog_inhibit or m.jog_stop or joint.kb_jog or joint.home.sequence < 0 or not joint.active:
+    if not m.enabled or m.jog_inhibit or m.jog_stop or joint.kb_jog or not joint.active:
         return
     if makes_a_limit_worse(m, joint, (counts > 0) == (joint.jog_scale > 0.0)):
         return
-    if locks_an_axis(m, number):
-        if not joint.wheel_refused:
-            snprintf(report(m, number), TEXT_SIZE, b"Can't wheel jog locking joint_num=%d", number)
+    if not may_wheel_jog_joint(m, joint, number):
         joint.wheel_refused = 1
         return
     joint.wheel_refused = 0
     jog_bounds(joint, &low, &high)
     joint.jog_vel = joint.vel_limit
     joint.free.vel_limit = joint.vel_limit
-    joint.free.acc_limit = joint.acc_limit * fraction(joint.jog_accel_fraction)
+    limit_own_moves(joint, fraction(joint.jog_accel_fraction))
     turn(&joint.free, counts * joint.jog_scale, joint.jog_vel_mode, low, high, m.dt)
     joint.wheel_jog = 1
     m.overriding_jog = m.override_limits != 0
@@ -241,7 +255,7 @@ cdef void axis_wheel(Motion* m, Axis* axis, int number) noexcept nogil:
         return
     axis.jog_vel = axis.vel_net
     axis.teleop.vel_limit = axis.vel_net
-    axis.teleop.acc_limit = axis.acc_net * fraction(axis.jog_accel_fraction)
+    limit_axis_moves(axis, fraction(axis.jog_accel_fraction))
     turn(&axis.teleop, counts * axis.jog_scale, axis.jog_vel_mode, axis.min_limit, axis.max_limit, m.dt)
     axis.wheel_jog = 1
 

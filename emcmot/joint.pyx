@@ -99,6 +99,7 @@ cdef void correct(Joint* joint, double dt) noexcept nogil:
     joint.correction.target = joint.backlash_corr
     joint.correction.vel_limit = CORRECTION_SHARE * joint.vel_limit
     joint.correction.acc_limit = CORRECTION_SHARE * joint.acc_limit
+    joint.correction.jerk_limit = CORRECTION_SHARE * joint.jerk_net
     joint.correction.enabled = 1
     free_planner_step(&joint.correction, dt)
 

@@ -13,14 +13,14 @@ from emcmot.eoffset cimport eoffsets_still, forget_eoffsets
 from emcmot.free_planner cimport free_planner_rest_at
 from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
 from emcmot.jog cimport stop_jogs
-from emcmot.joint cimport set_joint_position
+from emcmot.joint cimport limit_own_moves, set_joint_position
 from emcmot.kins.kinematics cimport Kinematics, select_way
 from emcmot.probe cimport PROBE_OFF
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport stop_spindles
 from emcmot.state cimport Axis, Joint, Motion
 from emcmot.tp.tp cimport TP_OK, tp_abort, tp_resume, tp_set_pos
-from emcmot.world cimport align_joints, refresh_planner_limits, update_world_feedback, world_from_joints
+from emcmot.world cimport align_joints, limit_axis_moves, refresh_planner_limits, update_world_feedback, world_from_joints
 
 from emcmot.layout import same_size
 
@@ -103,7 +103,7 @@ cdef void switch_on(Motion* m) noexcept nogil:
         joint = &m.joint[n]
         if joint.active:
             set_joint_position(joint, joint.pos_fb)
-        joint.free.acc_limit = joint.acc_limit
+        limit_own_moves(joint, 1.0)
         joint.amp_enable = joint.active
         joint.error = 0
         joint.jog_vel = 0.0
@@ -120,7 +120,7 @@ cdef void enter_free(Motion* m) noexcept nogil:
     for n in range(m.num_joints):
         joint = &m.joint[n]
         free_planner_rest_at(&joint.free, joint.pos_cmd)
-        joint.free.acc_limit = joint.acc_limit
+        limit_own_moves(joint, 1.0)
         joint.jog_vel = 0.0
     end_teleop(m)
     m.chasing = 0
@@ -139,7 +139,7 @@ cdef void enter_teleop(Motion* m) noexcept nogil:
     for n in range(MAX_AXES):
         axis = &m.axis[n]
         free_planner_rest_at(&axis.teleop, m.pos_cmd[n] - m.eoffset[n])
-        axis.teleop.acc_limit = axis.acc_net
+        limit_axis_moves(axis, 1.0)
         axis.pos_cmd = axis.teleop.pos
         axis.jog_vel = 0.0
     m.mode = MotionState_TELEOP
@@ -202,8 +202,11 @@ cdef void fall_to_free(Motion* m) noexcept nogil:
     for n in range(m.num_joints):
         joint = &m.joint[n]
         free_planner_rest_at(&joint.free, joint.pos_cmd)
-        joint.free.acc_limit = joint.acc_limit
+        limit_own_moves(joint, 1.0)
         joint.free.vel = joint.vel_cmd
+        if joint.free.jerk_limit > 0.0:  # an S-curve goes on from the end of the period, not from its mean
+            joint.free.acc = joint.acc_cmd
+            joint.free.vel += 0.5 * joint.acc_cmd * m.dt
         joint.free.active = 1
     m.chasing = 0
     m.mode = MotionState_FREE

@@ -193,7 +193,8 @@ cdef int set_aout(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     """M68 at once; M67 with the next move."""
     if c.now:
         m.analog_out[c.out] = c.minLimit
-        m.settling = SETTLING if m.kins.ways > 1 else 0
+        if m.kins.ways > 1:
+            m.settling = max(m.settling, SETTLING)
     else:
         m.pending_io_set = 1
         m.pending_io.aout_mask |= 1LL << c.out

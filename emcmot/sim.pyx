@@ -44,6 +44,7 @@ ctypedef struct Ground:
     int switches
     double command       # true position commanded in the period before, and its speed
     double speed
+    double push         # and its acceleration
 
 
 cdef class Motion(Core):
@@ -52,6 +53,7 @@ cdef class Motion(Core):
     cdef public bint loopback
     cdef public double worst_vel   # largest motor velocity so far as a share of its joint's limit
     cdef public double worst_acc
+    cdef public double worst_jerk  # of joints whose own moves have a jerk limit
     cdef Ground ground[MAX_JOINTS]
     cdef dict _by_name
     cdef int _serial
@@ -105,7 +107,7 @@ cdef class Motion(Core):
         g.index_pitch, g.index_at = index_pitch, index_at
         g.last_true = true_position
         g.command = g.encoder_zero + self.m.joint[joint].motor_pos_cmd
-        g.speed = 0.0
+        g.speed = g.push = 0.0
 
     def true_position(self, int joint):
         return self.ground[joint].encoder_zero + self.m.joint[joint].motor_pos_cmd
@@ -143,16 +145,19 @@ cdef class Motion(Core):
     cdef void measure(self) noexcept nogil:
         """Differentiate the motor commands, to compare them with the joints' limits."""
         cdef int n
-        cdef double command, vel, acc
+        cdef double command, vel, acc, jerk
         cdef Ground* g
         for n in range(self.m.num_joints):
             g = &self.ground[n]
             command = g.encoder_zero + self.m.joint[n].motor_pos_cmd
             vel = (command - g.command) / self.m.dt
             acc = (vel - g.speed) / self.m.dt
-            g.command, g.speed = command, vel
+            jerk = (acc - g.push) / self.m.dt
+            g.command, g.speed, g.push = command, vel, acc
             self.worst_vel = max(self.worst_vel, fabs(vel) / self.m.joint[n].vel_limit)
             self.worst_acc = max(self.worst_acc, fabs(acc) / self.m.joint[n].acc_limit)
+            if self.m.joint[n].jerk_net > 0.0:
+                self.worst_jerk = max(self.worst_jerk, fabs(jerk) / self.m.joint[n].jerk_net)
 
     cdef void period(self) noexcept nogil:
         self.m.host_now += self.m.dt

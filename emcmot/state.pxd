@@ -53,6 +53,7 @@ ctypedef struct Joint:
     double vel_limit
     double acc_limit
     double jerk_limit        # 0: none
+    double jerk_net          # of jogs and homing: its own limit or the machine's; 0: none
     double min_ferror
     double max_ferror
     double backlash
@@ -125,6 +126,8 @@ ctypedef struct Axis:
     # state
     double vel_net           # vel_limit and acc_limit, or less where the axis is a joint that may less
     double acc_net
+    double jerk_net          # of jogs; 0: none
+    double eoffset_jerk_limit
     FreePlanner teleop
     double pos_cmd           # without external offset
     int32_t kb_jog
@@ -224,7 +227,7 @@ ctypedef struct Motion:
     int chasing              # a joint of other than linear kinematics is behind its Cartesian command
     int coord_error
     int refused_way          # the kinematics type asked for last that there is none of
-    int settling             # periods that a switch of the kinematics may still need to come in
+    int settling             # periods of standstill until the feedback, or a switch of the kinematics, has come in
     # pins that tell of it
     int32_t motion_enabled_out
     int32_t coord_mode_out

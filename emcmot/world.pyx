@@ -289,6 +289,28 @@ cdef void lower(double* axis_limits, const double* row, double joint_limit) noex
             axis_limits[i] *= joint_limit / total
 
 
+cdef void lower_jerk(double* axis_limits, const double* row, double joint_limit) noexcept nogil:
+    """As ``lower``, where 0 is no limit."""
+    cdef int i
+    if joint_limit <= 0.0:
+        return
+    for i in range(MAX_AXES):
+        if row[i] != 0.0:
+            axis_limits[i] = tighter(axis_limits[i], joint_limit / fabs(row[i]))
+    lower(axis_limits, row, joint_limit)
+
+
+cdef double offset_share(const Axis* axis) noexcept nogil:
+    """The part of the axis that its external offset has for itself."""
+    return axis.eoffset_acc_limit / (axis.acc_limit + axis.eoffset_acc_limit) if axis.eoffset_acc_limit > 0.0 else 0.0
+
+
+cdef void limit_axis_moves(Axis* axis, double share) noexcept nogil:
+    """The acceleration (a share of what the axis may) and the jerk of jogs."""
+    axis.teleop.acc_limit = share * axis.acc_net
+    axis.teleop.jerk_limit = axis.jerk_net
+
+
 cdef double tighter(double one, double other) noexcept nogil:
     """The smaller of two limits, of which 0 is none."""
     if one <= 0.0 or 0.0 < other < one:
@@ -305,6 +327,7 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
     cdef double acc[MAX_AXES]
     cdef double jerk[MAX_AXES]
     cdef double row[MAX_AXES]
+    cdef double share
     cdef int n, i
     for i in range(MAX_AXES):
         vel[i] = m.axis[i].vel_limit
@@ -318,14 +341,22 @@ cdef void refresh_planner_limits(Motion* m) noexcept nogil:
             acc[i] = m.joint[n].acc_limit
         if i >= 0:
             jerk[i] = tighter(jerk[i], m.joint[n].jerk_limit)
+    for i in range(MAX_AXES):
+        share = offset_share(&m.axis[i])
+        m.axis[i].eoffset_jerk_limit = share * jerk[i] if m.planner_type else 0.0
+        jerk[i] *= 1.0 - share
     tell_planner(m, vel, acc, jerk)
     for n in range(m.kins.joints):
         joint_of_axes(m, n, row)
         lower(vel, row, m.joint[n].vel_limit)
         lower(acc, row, m.joint[n].acc_limit)
+        lower_jerk(jerk, row, tighter(m.joint[n].jerk_limit, m.jerk_limit))
     for i in range(MAX_AXES):
         m.axis[i].vel_net = vel[i]
         m.axis[i].acc_net = acc[i]
+        m.axis[i].jerk_net = jerk[i] if m.planner_type else 0.0
+    for n in range(m.num_joints):
+        m.joint[n].jerk_net = tighter(m.joint[n].jerk_limit, m.jerk_limit) if m.planner_type else 0.0
 
 
 cdef void tell_planner(Motion* m, const double* vel, const double* acc, const double* jerk) noexcept nogil:

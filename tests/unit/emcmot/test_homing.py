@@ -207,6 +207,49 @@ def test_home_all_goes_through_the_sequence_in_order() -> None:
     assert m.errors() == []
 
 
+@pytest.mark.parametrize(
+    ("sequences", "homed", "complaint"),
+    [
+        ((1, 2, 3), (True, True, True), None),
+        ((-1, 1, 2), (True, True, True), None),
+        ((0, 1, 1), (True, True, True), None),
+        ((0, 1, 100), (True, True, False), None),
+        ((0, 1, 3), (True, True, False), "Joint 2 is not homed with the others: no joint has HOME_SEQUENCE 2"),
+        ((2, 3, 4), (False, False, False), "Joint 0 is not homed with the others: no joint has HOME_SEQUENCE 1"),
+    ],
+)
+def test_home_all_starts_with_0_or_1_and_ends_at_the_first_gap(
+    sequences: tuple[int, ...], homed: tuple[bool, ...], complaint: str | None
+) -> None:
+    m = mill("free")
+    for joint, sequence in enumerate(sequences):
+        homing(m, joint, sequence=sequence)
+    assert home(m, -1) == ([complaint] if complaint else [])
+    assert tuple(m[f"joint.{j}.homed"] for j in range(3)) == homed
+
+
+def test_a_joint_with_a_positive_number_is_homed_alone_and_one_with_a_negative_with_its_partners() -> None:
+    m = mill("free")
+    for joint, sequence in enumerate((0, -1, 1)):
+        homing(m, joint, sequence=sequence)
+    assert home(m, 2) == []
+    assert [m[f"joint.{j}.homed"] for j in range(3)] == [False, False, True]
+    assert home(m, 1) == []
+    assert [m[f"joint.{j}.homed"] for j in range(3)] == [False, True, True]
+
+
+def test_a_wheel_does_not_move_one_side_of_a_gantry_and_says_so_once() -> None:
+    m = mill("free")
+    homing(m, 1, sequence=-1)
+    m["joint.1.jog-enable"] = 1
+    m["joint.1.jog-scale"] = 0.1
+    for _ in range(5):
+        m["joint.1.jog-counts"] += 3
+        m.step()
+    assert m["joint.1.pos-cmd"] == 0.0
+    assert m.errors() == ["Cannot wheel jog joint 1 because home_sequence synchronized (-1)"]
+
+
 def test_a_failed_joint_stops_the_rest_of_the_sequence() -> None:
     m = mill("free", limit=20.0)
     homing(m, 2, search=40.0, latch=2.0, sequence=0)  # there is no switch
