@@ -23,6 +23,7 @@ cdef int SIDE_OFF = CANON_SIDE_OFF, LEFT = CANON_SIDE_LEFT, RIGHT = CANON_SIDE_R
 cdef int XY = CANON_PLANE_XY, XZ = CANON_PLANE_XZ, INCHES = CANON_UNITS_INCHES
 cdef double CORNER_TOLERANCE = 0.05     # radians: flatter corners are no corners
 cdef double TINY = 1e-6
+cdef double SWEEP_MM = 0.0254, SWEEP_INCHES = 0.001      # radians that a corner may add to an arc before it gouges
 cdef str ARC_GOUGES = "Arc move in concave corner cannot be reached by the tool without gouging"
 
 NOSE = {1: (1, -1), 2: (-1, -1), 3: (-1, 1), 4: (1, 1), 5: (1, 0), 6: (0, -1), 7: (-1, 0), 8: (0, 1)}
@@ -73,7 +74,7 @@ cdef class Pending:
         for move in self.moves if checked else ():
             if move.kind == ARC:
                 after = sweep(move.su - move.cu, move.sv - move.cv, u - move.cu, v - move.cv, move.turns)
-                if after > move.full + TINY:
+                if after > move.full + (SWEEP_INCHES if s.units == INCHES else SWEEP_MM):
                     return fail(s, ARC_GOUGES)
             elif not move.entry and (u - move.su) * move.du + (v - move.sv) * move.dv < 0.0:
                 return fail(s, f"Straight {'traverse' if move.kind == TRAVERSE else 'feed'} in concave corner "
@@ -313,10 +314,10 @@ cdef int meet_line(State s, Pending p, Corner c, double du, double dv) except -1
     return 0
 
 
-cdef int meet_arc(State s, Pending p, double cu, double cv, double radius, int turns) except -1:
+cdef int meet_arc(State s, Pending p, Corner c, double cu, double cv, double radius, int turns) except -1:
     """Inside corner with an arc that follows: the tool comes to its circle from outside, or from within."""
     cdef Move last = planar(p)
-    cdef double u = s.pos[p.u], v = s.pos[p.v]
+    cdef double u = s.pos[p.u], v = s.pos[p.v], stretch, ru, rv
     cdef bint inner = within(s, turns), left
     if last is not None and last.kind == ARC:
         if hypot(last.cu - cu, last.cv - cv) < TINY:
@@ -325,8 +326,12 @@ cdef int meet_arc(State s, Pending p, double cu, double cv, double radius, int t
         if not circles(last.cu, last.cv, hypot(u - last.cu, v - last.cv), cu, cv, radius, left, &u, &v):
             return fail(s, "Arc to arc motion makes a corner the compensated tool can't fit in without gouging")
     elif last is not None:
-        if not line_and_circle(u, v, last.du, last.dv, cu, cv, radius, inner, &u, &v):
+        # Computed with a centre as far from the corner as from the arc's end, then moved to the programmed centre.
+        stretch = (radius + (s.comp_radius if inner else -s.comp_radius)) / hypot(cu - c.ou, cv - c.ov)
+        ru, rv = c.ou + (cu - c.ou) * stretch, c.ov + (cv - c.ov) * stretch
+        if not line_and_circle(u, v, last.du, last.dv, ru, rv, radius, inner, &u, &v):
             return fail(s, ARC_GOUGES)
+        u, v = u + cu - ru, v + cv - rv
     p.settle(s, u, v)
     s.pos[p.u], s.pos[p.v] = u, v
     return 0
@@ -374,7 +379,7 @@ cdef int compensated_straight(State s, Block* b, int code, const double* end) ex
         if inside(c):
             meet_line(s, p, c, du, dv)
         else:
-            p.settle(s, s.pos[p.u], s.pos[p.v])
+            p.settle(s, s.pos[p.u], s.pos[p.v], c.beta > CORNER_TOLERANCE)
     if code == 10 and s.feed_mode == 930:
         inverse_rate(s, b, straight_length(start, end))
     if length == 0.0:
@@ -427,7 +432,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         nu, nv = toward * r * (a.centre[0] - ou) / length, toward * r * (a.centre[1] - ov) / length
         c = corner(s, p, ou, ov, nu, nv, M_PI + toward * CORNER_TOLERANCE)
         if inside(c):
-            meet_arc(s, p, a.centre[0], a.centre[1], length - toward * r, a.turns)
+            meet_arc(s, p, c, a.centre[0], a.centre[1], radius - toward * r, a.turns)
         else:
             p.settle(s, s.pos[p.u], s.pos[p.v], False)
     if s.feed_mode == 930:
@@ -436,7 +441,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
         outside(s, p, c, ARC)
     move.su, move.sv = s.pos[p.u], s.pos[p.v]
     move.end[p.u], move.end[p.v] = eu, ev
-    if s.comp_first or not inside(c):
+    if s.comp_first:
         ou, ov = move.su, move.sv
     move.full = sweep(ou - move.cu, ov - move.cv, eu - move.cu, ev - move.cv, move.turns)
     return done(s, p, move, end)

@@ -1,42 +1,61 @@
-"""Modal state that is put aside and taken back: M70, M71, M72, M73.
+"""The codes in force, and putting them aside and taking them back: M70, M71, M72, M73.
 
-What is saved belongs to a call level and goes with it. Restoring runs the handler of each code whose mode has changed
-since, in the order of execution, so the canon hears only of changes.
+What is saved belongs to a call level and goes with it. Restoring writes the codes that have changed since as a line, as
+LinuxCNC does, and runs it; so it restores what such a line can say: a feed with one decimal, a whole speed, spindle 0,
+G43 of the tool in the spindle.
 """
 
-from libc.string cimport memset
-
-from rs274ngc.block cimport *
-from rs274ngc.canon import CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_SIDE_LEFT, CANON_SIDE_OFF
-from rs274ngc.compensation cimport set_compensation
-from rs274ngc.machine cimport coolant, overrides, spindle
-from rs274ngc.modes cimport (
-    send_control, set_diameter_mode, set_distance, set_feed, set_feed_mode, set_ijk_distance, set_plane, set_retract,
-    set_speed, set_spindle_mode, set_units,
-)
-from rs274ngc.offsets cimport select_origin, shift_tool_offset
+from nml.errors import InterpError
+from rs274ngc.block cimport Block
+from rs274ngc.canon import CANON_CLOCKWISE, CANON_STOPPED, CANON_UNITS_INCHES
 from rs274ngc.predefined import PLANE_CODES
 from rs274ngc.state cimport State, fail
 
-COORD_SYSTEM_CODES = (0, 540, 550, 560, 570, 580, 590, 591, 592, 593)
+SIDE_CODES = {1: 420, 2: 410, 3: 400}
+CONTROL_CODES = {1: 611, 2: 610, 3: 640}
+
+RESTORED_G = (3, 4, 6, 7, 8, 9, 10, 11, 13, 14, 15, 16)
+"""Places in ``active_g_codes`` that M72 restores, in the order of its line; units (5) have one of their own before."""
+UNITS, CONTROL, SPINDLE = 5, 11, 2
+RESTORED_M = (4, 5, 6, 7, 8)
+"""Places in ``active_m_codes`` that have lines of their own afterwards: mist, flood, overrides, adaptive feed, feed hold."""
 
 
-class Saved:
-    """The modes of one moment."""
+cdef tuple active_g_codes(State s):
+    """Line number and the G codes in force, times 10, by modal group; -1: none."""
+    return (
+        s.line,
+        s.motion,
+        s.last_setting,
+        PLANE_CODES[s.plane],
+        SIDE_CODES[s.comp_side],
+        200 if s.units == CANON_UNITS_INCHES else 210,
+        910 if s.incremental else 900,
+        s.feed_mode,
+        540 + 10 * (s.origin_index - 1) if s.origin_index <= 6 else 590 + s.origin_index - 6,
+        430 if any([s.tool[k] for k in range(9)]) else 490,
+        980 if s.retract_old_z else 990,
+        CONTROL_CODES[s.control_mode],
+        -1,
+        970 if s.css[0] == 0.0 else 960,
+        901 if s.ijk_absolute else 911,
+        70 if s.diameter_mode else 80,
+        922 if s.params[5210] == 0.0 else 923,
+    )
 
-    def __init__(self, State s):
-        self.units, self.plane = s.units, s.plane
-        self.incremental, self.ijk_absolute, self.diameter_mode = s.incremental, s.ijk_absolute, s.diameter_mode
-        self.retract_old_z = s.retract_old_z
-        self.feed_mode, self.feed = s.feed_mode, s.feed
-        self.origin_index = s.origin_index
-        self.control = (s.control_mode, s.tolerance, s.naivecam_tolerance)
-        self.spindles = [(s.css[n], s.speed[n], s.turning[n], s.speed_override[n]) for n in range(s.spindles)]
-        self.mist, self.flood = s.mist, s.flood
-        self.feed_override, self.adaptive_feed, self.feed_hold = s.feed_override, s.adaptive_feed, s.feed_hold
-        self.compensation = (s.comp_side, s.comp_radius, s.comp_orientation)
-        self.tool = s.tool_offset
-        self.tool_offset_code, self.g43_active = s.tool_offset_code, s.g43_active
+
+cdef tuple active_m_codes(State s):
+    """Line number and the M codes in force; -1: none. M51 stands for M49 and M50 P0 too, as in LinuxCNC."""
+    cdef int spindle = 5 if s.turning[0] == CANON_STOPPED else 3 if s.turning[0] == CANON_CLOCKWISE else 4
+    return (
+        s.line, -1, spindle, s.last_change, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
+        48 if s.feed_override else 51, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, 0,
+    )
+
+
+cdef tuple active_settings(State s):
+    """Line number, feed, speed, tolerance, naive CAM tolerance."""
+    return (float(s.line), s.feed, s.speed[0], s.tolerance, s.naivecam_tolerance)
 
 
 cdef int context(State s, Block* b, int code) except -1:
@@ -49,7 +68,7 @@ cdef int context(State s, Block* b, int code) except -1:
         s.frame.saved = None
         s.frame.restore = False
         return 0
-    s.frame.saved = Saved(s)
+    s.frame.saved = (active_g_codes(s), active_m_codes(s), active_settings(s))
     if code == 73:
         s.frame.restore = len(s.frames) > 1
     return 0
@@ -57,101 +76,33 @@ cdef int context(State s, Block* b, int code) except -1:
 
 cdef int restore(State s, saved) except -1:
     """Back to the modes of ``saved``."""
-    cdef Block b
-    cdef int n
-    memset(&b, 0, sizeof(b))
-    memset(b.g, 0xFF, sizeof(b.g))
-    if s.units != saved.units:
-        set_units(s, &b, 200 if saved.units == 1 else 210)
-    restore_spindles_and_feed(s, &b, saved)
-    if s.mist != saved.mist or s.flood != saved.flood:
-        coolant(s, &b, 9)
-        if saved.mist:
-            coolant(s, &b, 7)
-        if saved.flood:
-            coolant(s, &b, 8)
-    restore_overrides(s, &b, saved)
-    if s.plane != saved.plane:
-        set_plane(s, &b, PLANE_CODES[saved.plane])
-    if s.diameter_mode != saved.diameter_mode:
-        set_diameter_mode(s, &b, 70 if saved.diameter_mode else 80)
-    restore_compensation(s, &b, saved)
-    if s.tool_offset != saved.tool:
-        shift_tool_offset(s, saved.tool)
-        s.tool_offset_code, s.g43_active = saved.tool_offset_code, saved.g43_active
-    if s.origin_index != saved.origin_index:
-        select_origin(s, &b, COORD_SYSTEM_CODES[saved.origin_index])
-    if (s.control_mode, s.tolerance, s.naivecam_tolerance) != saved.control:
-        if saved.control[0] == CANON_CONTINUOUS:
-            s.tolerance, s.naivecam_tolerance = saved.control[1:]
-        s.control_mode = saved.control[0]
-        send_control(s)
-    if s.retract_old_z != saved.retract_old_z:
-        set_retract(s, &b, 980 if saved.retract_old_z else 990)
-    set_distance(s, &b, 910 if saved.incremental else 900)
-    set_ijk_distance(s, &b, 901 if saved.ijk_absolute else 911)
+    for line in restoring_lines(saved, (active_g_codes(s), active_m_codes(s), active_settings(s))):
+        try:
+            s.interp.run_aside(line)
+        except InterpError as error:
+            raise InterpError(f"M7x: restore_settings failed executing: '{line}': {error.message}") from None
     return 0
 
 
-cdef int restore_spindles_and_feed(State s, Block* b, saved) except -1:
-    cdef int n
-    for n in range(s.spindles):
-        css, speed, turning, _ = saved.spindles[n]
-        b.words = 1 << W_DOLLAR
-        b.value[W_DOLLAR] = n
-        if s.css[n] != css:
-            b.words |= 1 << W_D
-            b.value[W_D] = css
-            set_spindle_mode(s, b, 960 if css != 0.0 else 970)
-    b.words = 0
-    if s.feed_mode != saved.feed_mode:
-        set_feed_mode(s, b, saved.feed_mode)
-    if s.feed != saved.feed:
-        b.value[W_F] = saved.feed
-        set_feed(s, b)
-    for n in range(s.spindles):
-        css, speed, turning, _ = saved.spindles[n]
-        b.words = 1 << W_DOLLAR
-        b.value[W_DOLLAR] = n
-        b.value[W_S] = speed
-        if s.speed[n] != speed:
-            set_speed(s, b)
-        if s.turning[n] != turning:
-            spindle(s, b, {CANON_CLOCKWISE: 3, CANON_COUNTERCLOCKWISE: 4}.get(turning, 5))
-    b.words = 0
-    return 0
-
-
-cdef int restore_overrides(State s, Block* b, saved) except -1:
-    cdef int n
-    b.words = 1 << W_P
-    for code, now, before in (
-        (50, s.feed_override, saved.feed_override),
-        (52, s.adaptive_feed, saved.adaptive_feed),
-        (53, s.feed_hold, saved.feed_hold),
-    ):
-        if now != before:
-            b.value[W_P] = before
-            overrides(s, b, code)
-    b.words |= 1 << W_DOLLAR
-    for n in range(s.spindles):
-        if s.speed_override[n] != saved.spindles[n][3]:
-            b.value[W_DOLLAR] = n
-            b.value[W_P] = saved.spindles[n][3]
-            overrides(s, b, 51)
-    b.words = 0
-    return 0
-
-
-cdef int restore_compensation(State s, Block* b, saved) except -1:
-    side, radius, orientation = saved.compensation
-    if s.comp_side == side:
-        return 0
-    if s.comp_side != CANON_SIDE_OFF:
-        set_compensation(s, b, 400)
-    if side != CANON_SIDE_OFF:
-        b.words = (1 << W_D) | (1 << W_L if s.plane == 3 else 0)
-        b.value[W_D], b.value[W_L] = radius * 2.0, orientation
-        set_compensation(s, b, 411 if side == CANON_SIDE_LEFT else 421)
-        b.words = 0
-    return 0
+def restoring_lines(saved, now):
+    """What must be executed to get from the codes and settings in force now to the saved ones."""
+    g, m, (_, feed, speed, tolerance, naivecam) = saved
+    g_now, m_now, settings_now = now
+    lines = []
+    if g[UNITS] != g_now[UNITS]:
+        lines.append(f"G{g[UNITS] // 10}")
+    line = ""
+    if feed != settings_now[1]:
+        line += f" F{feed:.1f}"
+    if speed != settings_now[2]:
+        line += f" S{speed:.0f}"
+    for k in RESTORED_G:
+        if g[k] != g_now[k] and not (k == CONTROL and g[k] == 640):
+            line += f" G{g[k] // 10}" + (f".{g[k] % 10}" if g[k] % 10 else "")
+    if g[CONTROL] == 640 and (g_now[CONTROL] != 640 or (tolerance, naivecam) != settings_now[3:]):
+        line += f" G64 P{tolerance:f} Q{naivecam:f}"
+    if m[SPINDLE] != m_now[SPINDLE]:
+        line += f"M{m[SPINDLE]}"
+    if line:
+        lines.append(line)
+    return lines + [f"M{m[k]}" for k in RESTORED_M if m[k] not in (-1, m_now[k])]

@@ -11,11 +11,11 @@ from libc.string cimport memcpy, memset
 from nml.errors import InterpError, Place
 from rs274ngc import varfile
 from rs274ngc.block cimport *
-from rs274ngc.canon import CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_SIDE_OFF, CANON_UNITS_INCHES, CANON_XYZ
+from rs274ngc.canon import CANON_SIDE_OFF, CANON_UNITS_INCHES, CANON_XYZ
 from rs274ngc.canon cimport Canon
 from rs274ngc.codes cimport check, enhance, run
 from rs274ngc.compensation cimport drop
-from rs274ngc.context cimport restore
+from rs274ngc.context cimport active_g_codes, active_m_codes, active_settings, restore
 from rs274ngc.flow cimport Flow
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
@@ -363,6 +363,22 @@ cdef class Interpreter:
             fail(self.state, "DISABLE_FANUC_STYLE_SUB set in INI file, but found m99")
         self.flow.end_subprogram()
 
+    def run_aside(self, text):
+        """Run a line of plain, not remapped codes in the middle of another."""
+        cdef State s = self.state
+        cdef Block block = s.block
+        cdef bytes raw = s.raw[:s.raw_size]
+        remaps, s.remaps = s.remaps, {}
+        try:
+            self.take_text(text)
+            self.understand()
+            run(s, &s.block)
+        finally:
+            s.remaps = remaps
+        s.block = block
+        memcpy(s.raw, <const char*>raw, len(raw) + 1)
+        s.raw_size = <int>len(raw)
+
     def execute_inner(self, text):
         """Run a line, and the subroutine that it calls, in the middle of another: for Python remaps."""
         cdef State s = self.state
@@ -572,8 +588,7 @@ cdef class Interpreter:
 
     def active_settings(self):
         """Sequence number, feed, speed, tolerance, naive CAM tolerance."""
-        cdef State s = self.state
-        return (float(s.line), s.feed, s.speed[0], s.tolerance, s.naivecam_tolerance)
+        return active_settings(self.state)
 
 
 cdef extern from "Python.h":
@@ -582,36 +597,3 @@ cdef extern from "Python.h":
 
 cdef int check_signals() except -1:
     return PyErr_CheckSignals()
-
-
-cdef tuple active_g_codes(State s):
-    return (
-        s.line,
-        s.motion,
-        s.last_setting,
-        {1: 170, 2: 190, 3: 180, 4: 171, 5: 191, 6: 181}[s.plane],
-        {1: 420, 2: 410, 3: 400}[s.comp_side],
-        200 if s.units == CANON_UNITS_INCHES else 210,
-        910 if s.incremental else 900,
-        s.feed_mode,
-        540 + 10 * (s.origin_index - 1) if s.origin_index <= 6 else 590 + s.origin_index - 6,
-        s.tool_offset_code,
-        980 if s.retract_old_z else 990,
-        {1: 611, 2: 610, 3: 640}[s.control_mode],
-        -1,
-        970 if s.css[0] == 0.0 else 960,
-        901 if s.ijk_absolute else 911,
-        70 if s.diameter_mode else 80,
-        922 if s.params[5210] == 0.0 else 923,
-    )
-
-
-cdef tuple active_m_codes(State s):
-    cdef int spindle = 5 if s.turning[0] == 1 else 3 if s.turning[0] == CANON_CLOCKWISE else 4
-    override = 51       # LinuxCNC's figure with M49 too
-    if s.feed_override:
-        override = 48 if s.speed_override[0] else 50
-    return (
-        s.line, -1, spindle, s.last_change, 7 if s.mist else -1 if s.flood else 9, 8 if s.flood else -1,
-        override, 52 if s.adaptive_feed else -1, 53 if s.feed_hold else -1, 0,
-    )

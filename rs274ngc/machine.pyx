@@ -56,6 +56,7 @@ cdef int orient(State s, Block* b, int code) except -1:
         s.canon.orient_spindle(n, angle - 360.0 * floor(angle / 360.0) if angle >= 360.0 else angle, <int>value_or(b, W_P, 0.0))
     if has(b, W_Q):
         s.canon.wait_spindle_orient_complete(n, b.value[W_Q])
+    s.turning[n] = STOPPED
     return 0
 
 

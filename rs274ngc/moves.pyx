@@ -6,8 +6,9 @@ the velocity and acceleration that the axes allow on each move. What comes out a
 
 Velocity of a straight move: each axis would need |distance| / MAX_VELOCITY; the slowest axis decides, and the path is counted along
 XYZ if any of them moves, else UVW, else the rotary axes. Acceleration likewise. A programmed feed counts along the same path.
-Joined lines are held back until ``flush``; whoever queues anything else flushes first. Lines are joined within half of the
-path tolerance (G64 P) at most, and a joined line leaves only the rest of the tolerance to the planner: path error within P.
+Joined lines are held back until ``flush``; whoever queues anything else flushes first. Lines are joined within JOINED_SHARE of the
+path tolerance (G64 P) at most, so only where they are as good as straight: the planner makes better use of the tolerance. A joined
+line leaves only the rest of it to the planner: path error within P.
 """
 
 from libc.math cimport INFINITY, atan2, cos, fabs, fmax, fmin, hypot, sin, sqrt
@@ -23,6 +24,7 @@ STOP, BLEND, TANGENT = range(1, 4)
 _TERM_COND = {CANON_EXACT_STOP: STOP, CANON_EXACT_PATH: TANGENT, CANON_CONTINUOUS: BLEND}
 
 cdef double TINY = 1e-7  # an axis that moves less than this does not move
+cdef double JOINED_SHARE = 0.002
 cdef double TWO_PI = 6.283185307179586
 cdef int C_FEED = FEED
 cdef int C_TRAVERSE = TRAVERSE
@@ -227,7 +229,7 @@ cdef class MoveCanon(Canon):
         """How far joined lines may leave the program's path."""
         self.join_tolerance = self.naivecam_tolerance
         if self.tolerance > 0.0:
-            self.join_tolerance = fmin(self.join_tolerance, 0.5 * self.tolerance)
+            self.join_tolerance = fmin(self.join_tolerance, JOINED_SHARE * self.tolerance)
 
     cpdef void update_end_point(self, double x, double y, double z, double a, double b, double c, double u, double v, double w) except *:
         self.set_end(self.coords.to_machine(x, y, z, a, b, c, u, v, w))

@@ -407,6 +407,5 @@ cdef int tool_length(State s, Block* b, int code) except -1:
             for k in range(9):
                 s.tool[k] += <double>entry.offset[k] * parameter_factor(s, k)
     s.g43_active = code != 490
-    s.tool_offset_code = code
     to_program(s, point)
     return send_tool_offset(s)

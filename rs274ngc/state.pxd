@@ -69,7 +69,6 @@ cdef class State:
     cdef public double tolerance, naivecam_tolerance
     cdef public int comp_side       # CANON_SIDE_*
     cdef public bint g43_active
-    cdef public int tool_offset_code
     cdef public bint g92_applied
     cdef public double feed
     cdef public int spindles

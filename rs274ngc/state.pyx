@@ -57,7 +57,6 @@ cdef class State:
         self.feed_mode = 940
         self.control_mode = CANON_CONTINUOUS
         self.comp_side = CANON_SIDE_OFF
-        self.tool_offset_code = 490
         self.retract_old_z = False
         self.origin_index = 1
         self.feed_override = self.feed_hold = True

@@ -117,6 +117,70 @@ AWKWARD = {
         g53 g0 a1 x2
         g28.1
         g30 a9 x3""",
+    "going on nearly straight after a corner that the tool cannot reach": """\
+        g42 d1
+        g1 x5 y0
+        g1 x.08 y-1.84
+        g1 x-6.64 y-4.29
+        g40""",
+    "a nearly flat corner that lengthens an arc": """\
+        g18
+        g42 d7
+        g1 z5 x0
+        g0 z2.07 x2.03
+        g2 z4.16 x5.39 k1.045 i1.680
+        g40""",
+    "an inside corner with an arc whose radii differ by rounding": """\
+        g18
+        g42 d2
+        g1 z-3.295 x8.375
+        g3 z-6.474 x5.577 k-2.274 i-0.621
+        g3 z2.166 x6.619 k3.397 i8.173
+        g40""",
+    "restoring feed, speed, coolant, overrides and the offset of another tool": """\
+        t1 m6
+        g43
+        f12.345 s123.456 m3
+        m7
+        m52 p1
+        m53 p0
+        m49
+        m70
+        t2 m6
+        g43.1 z4
+        f3 s4 m4
+        m9
+        m48
+        m52 p0
+        m53 p1
+        m72""",
+    "restoring units, planes, distance modes and path control": """\
+        g18 g91 g95 g55 g99 g90.1 g7 f7.16
+        g64 p.1234567 q.056
+        m70
+        g20 g17 g90 g94 g54 g98 g91.1 g8 f3
+        g61
+        m72""",
+    "restoring G96 with the speed that is set already": """\
+        g96 s50
+        m70
+        g97 s50
+        m72""",
+    "restoring at return": """\
+        o1 sub
+          m73
+          g20 f1.23
+          g91 g18
+          g92 x1
+          s400 m3
+        o1 endsub
+        f3.456 s12
+        o1 call
+        g0 x1""",
+    "orienting a spindle that turns": """\
+        m3 s100
+        m19 r10
+        (debug,#<_spindle_on> #<_spindle_cw>)""",
 }
 """Programs that random ones seldom write, and in which the two once differed."""
 

@@ -122,7 +122,6 @@ KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str]], ...] = tuple(
         ("number of spindles in the error", r"^num_spindles =", ""),
         ("place of an error in a lathe profile", r"\no\d+ endsub$", r"\ng7[012]"),
         ("overrides after G76 while M49 or M50 P0 is in force", r"ENABLE_FEED_OVERRIDE|DISABLE_FEED_OVERRIDE", ""),
-        ("a compensated rapid into a corner", "", r"Straight traverse in concave corner"),
         ("polar words with G43.1", r"^N\S* USE_TOOL_LENGTH_OFFSET\(0.0000 0.0000", "USE_TOOL_LENGTH_OFFSET"),
         ("a word twice", "", r"Multiple [pq@^] words"),
         ("M98 without P beyond a search", "Found 'm98' code with no P-word", ""),
