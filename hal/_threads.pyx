@@ -13,7 +13,7 @@ import os
 
 from libc.stdint cimport int32_t, int64_t, uint8_t, uint64_t
 from libc.stdlib cimport calloc, free
-from posix.time cimport CLOCK_MONOTONIC, TIMER_ABSTIME, clock_gettime, clock_nanosleep, timespec
+from posix.time cimport CLOCK_MONOTONIC, CLOCK_THREAD_CPUTIME_ID, TIMER_ABSTIME, clock_gettime, clock_nanosleep, timespec
 from posix.unistd cimport usleep
 
 from hal._mapping cimport announce, hal_segment, hal_thread
@@ -118,6 +118,8 @@ cdef struct HalThread:
     double due  # nominal ns since the scheduler's origin
     int64_t period_ns
     int64_t announced_ns  # host time
+    int64_t overworked_ns  # processor time of the longest period whose functions need more than there is; 0: none
+    bint was_long  # the period before took longer than it may
 
 cdef struct State:
     pthread_t thread
@@ -132,6 +134,13 @@ cdef struct State:
 cdef int64_t now_ns() noexcept nogil:
     cdef timespec t
     clock_gettime(CLOCK_MONOTONIC, &t)
+    return <int64_t>t.tv_sec * 1000000000 + t.tv_nsec
+
+
+cdef int64_t processor_ns() noexcept nogil:
+    """Time that this thread has run; what others took from it does not count."""
+    cdef timespec t
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t)
     return <int64_t>t.tv_sec * 1000000000 + t.tv_nsec
 
 
@@ -168,12 +177,28 @@ cdef void keep_longest(Call* call, int32_t took, int64_t took_ticks) noexcept no
         call.increased.b = call.was_increased = 0
 
 
+cdef void judge_length(HalThread* thread, int32_t took, int64_t begun_at) noexcept nogil:
+    """Note a period whose functions themselves need more time than it has.
+
+    The processor's time is asked for (``begun_at``) only after a period that was too long, so a thread that keeps its time pays
+    nothing, and one that was merely interrupted is not blamed.
+    """
+    if took <= thread.period_ns:
+        thread.was_long = False
+        return
+    cdef int64_t needed = processor_ns() - begun_at if thread.was_long else 0
+    if needed > max(thread.period_ns, thread.overworked_ns):
+        thread.overworked_ns = needed
+    thread.was_long = True
+
+
 cdef void run_calls(HalThread* thread) noexcept nogil:
     """One period: every function in order, each with its time.
 
     Between two periods the processor's caches forget most of what functions touch, so it is fetched some functions ahead.
     """
     cdef Calls* calls = load_calls(&thread.calls)
+    cdef int64_t begun_at = processor_ns() if thread.was_long else 0
     cdef int64_t begin = ticks()
     cdef int64_t before = begin
     cdef int64_t after = begin
@@ -201,6 +226,7 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
     hal_at(thread.time).s = took
     if took > hal_at(thread.tmax).s:
         hal_at(thread.tmax).s = took
+    judge_length(thread, took, begun_at)
     hal_at(thread.beat).u += 1
 
 
@@ -299,6 +325,11 @@ cdef class NativeThread:
             return False
         free(old)
         return True
+
+    @property
+    def overworked_ns(self) -> int:
+        """Processor time of the longest period whose functions needed more than the period has; 0: there was none."""
+        return self.thread.overworked_ns
 
     def pause(self) -> bool:
         """Wait until the period that runs now, if any, is over; False where it does not end."""

@@ -50,6 +50,7 @@ class Server:
             "notes": self.look,
         }
         self._late: set[str] = set()  # threads whose first overrun has been told
+        self._overworked: set[str] = set()  # threads that were said to have too much to do
 
     def quit(self) -> None:
         """End: stop the threads, unload everything."""
@@ -61,6 +62,10 @@ class Server:
             self._note(text)
         for name in self.host.hal.reap():
             self._note(f"HAL: component '{name}' died without leaving; removed")
+        for name, complaint in self.host.overworked():
+            if name not in self._overworked:
+                self._overworked.add(name)
+                self._note(f"{complaint}. Give the thread a longer period, or less to do")
         for thread in self.host.hal.segment.threads() if self.host.realtime else []:
             if thread.overruns and thread.name not in self._late:
                 self._late.add(thread.name)

@@ -320,6 +320,19 @@ class Host:
         made = self._threads[name] = HostThread(native, scheduler, comp, owner)
         return made
 
+    def overworked(self) -> list[tuple[str, str]]:
+        """Threads whose functions need more processor time than a period has: name, and what is wrong."""
+        found = []
+        for name, thread in self._threads.items():
+            record, needed = thread.native.record, thread.native.overworked_ns
+            if needed:
+                times = {funct.name: int(self.hal.value(f"{funct.name}.tmax")) for funct in record.functs()}
+                longest = max(times, key=lambda funct: times[funct], default="")
+                slowest = f", of which '{longest}' took {times[longest]} ns once" if times else ""
+                text = f"thread '{name}' cannot keep its period of {record.period_ns} ns: its functions need"
+                found.append((name, f"{text} {needed} ns{slowest}"))
+        return found
+
     def _drop_thread(self, name: str) -> None:
         thread = self._threads.pop(name)
         thread.scheduler.remove(thread.native)

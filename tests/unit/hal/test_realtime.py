@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -217,3 +219,38 @@ def test_a_waiter_is_woken_by_what_a_native_thread_writes(host: Host) -> None:
         host.hal.set_item("updown.0.countup", "1")
         assert count.wait(1, timeout=30.0)
         assert host.hal.value("t.threadbeat") > 0
+
+
+def _busy(period_ns: int) -> None:
+    end = time.thread_time_ns() + 2 * period_ns
+    while time.thread_time_ns() < end:
+        pass
+
+
+def _held_up(period_ns: int) -> None:
+    time.sleep(2e-9 * period_ns)
+
+
+def _periods_of(host: Host, function: Callable[[int], None]) -> None:
+    host.load("threads", ["name1=t", "period1=10000000"])
+    comp = host.component("long")
+    comp.python_function("long", function)
+    comp.ready()
+    host.add_function("long", "t")
+    host.hal.start_threads()
+    wait_cycles(host, 6)
+
+
+def test_a_thread_whose_functions_need_more_than_its_period_is_named_with_the_slowest(host: Host) -> None:
+    _periods_of(host, _busy)
+    [(name, text)] = host.overworked()
+    assert name == "t"
+    assert text.startswith("thread 't' cannot keep its period of 10000000 ns: its functions need ")
+    assert ", of which 'long' took " in text
+
+
+def test_a_thread_that_was_merely_held_up_is_not_blamed(host: Host) -> None:
+    _periods_of(host, _held_up)
+    [thread] = host.hal.segment.threads()
+    assert host.hal.value("long.tmax") > thread.period_ns
+    assert host.overworked() == []
