@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import linuxcnc
-from linuxcnc.completion import bash_completion
+from linuxcnc.completion import SHELLS
 from linuxcnc.program import AXES, Operator, ProgramError, run_loaded
 from nml import clock, namespace
 
@@ -44,20 +44,18 @@ class Console:
             raise linuxcnc.error(f"no machine runs in namespace {namespace.namespace()!r}")
 
     def done(self, what: str) -> None:
-        """Wait for the end of the last order; Refused with the operator's message when it failed."""
-        if self.command.wait_complete(PATIENCE) == linuxcnc.RCS_DONE:
-            return
-        message = self.errors.poll()
-        raise Refused(message[1] if message else f"{what} was refused")
-
-    def reach(self, condition: Callable[[linuxcnc.stat], bool], what: str, timeout: float = 5.0) -> None:
-        """Wait for a state of the machine."""
-        deadline = clock.host_now() + timeout
+        """Wait for the end of the last order; Refused with its own messages when it was not done."""
+        result = self.command.result(PATIENCE)
+        if result is None:
+            raise Refused(f"{what}: not over after {PATIENCE:g} s")
+        if not result:
+            raise Refused("; ".join(result.messages) or f"{what} was {result.outcome.value}")
         self.status.poll()
-        while not condition(self.status):
-            message = self.errors.poll()
-            if message or clock.host_now() > deadline:
-                raise Refused(message[1] if message else f"{what}: nothing happened")
+
+    def rest(self) -> None:
+        """Wait until the machine stands."""
+        deadline = clock.host_now() + PATIENCE
+        while not self.status.inpos and clock.host_now() < deadline:
             self.status.wait(LOOK)
             self.status.poll()
 
@@ -65,7 +63,6 @@ class Console:
         if self.status.task_mode != mode:
             self.command.mode(mode)
             self.done("the mode")
-            self.status.poll()
 
     def axes(self) -> str:
         """Letters of the machine's axes."""
@@ -116,30 +113,28 @@ def _word(value: Any) -> str:
 
 def _on(console: Console, options: argparse.Namespace) -> None:
     console.command.state(linuxcnc.STATE_ESTOP_RESET)
-    console.reach(lambda s: s.task_state != linuxcnc.STATE_ESTOP, "E-stop reset")
+    console.done("E-stop reset")
     console.command.state(linuxcnc.STATE_ON)
-    console.reach(lambda s: s.task_state == linuxcnc.STATE_ON, "machine on")
+    console.done("machine on")
 
 
-def _off(console: Console, options: argparse.Namespace) -> None:
-    console.command.state(linuxcnc.STATE_OFF)
-    console.reach(lambda s: s.task_state != linuxcnc.STATE_ON, "machine off")
+def _state(state: int, what: str) -> Callable[[Console, argparse.Namespace], None]:
+    def give(console: Console, options: argparse.Namespace) -> None:
+        console.command.state(state)
+        console.done(what)
 
-
-def _estop(console: Console, options: argparse.Namespace) -> None:
-    console.command.state(linuxcnc.STATE_ESTOP)
-    console.reach(lambda s: s.task_state == linuxcnc.STATE_ESTOP, "E-stop")
+    return give
 
 
 def _home(console: Console, options: argparse.Namespace) -> None:
     if not options.all and not options.joints:
         raise Refused("home: name joints, or --all")
     console.mode(linuxcnc.MODE_MANUAL)
-    joints = list(range(console.status.joints)) if options.all else options.joints
-    for joint in [-1] if options.all else joints:
+    console.command.teleop_enable(0)
+    console.done("joint mode")
+    for joint in [-1] if options.all else options.joints:
         console.command.home(joint)
         console.done("homing")
-    console.reach(lambda s: all(s.homed[joint] for joint in joints), "homing", PATIENCE)
 
 
 def _mdi(console: Console, options: argparse.Namespace) -> None:
@@ -165,6 +160,7 @@ def _run(console: Console, options: argparse.Namespace) -> None:
 def _auto(action: int) -> Callable[[Console, argparse.Namespace], None]:
     def give(console: Console, options: argparse.Namespace) -> None:
         console.command.auto(action)
+        console.done("it")
 
     return give
 
@@ -181,13 +177,11 @@ def _jog(console: Console, options: argparse.Namespace) -> None:
     console.mode(linuxcnc.MODE_MANUAL)
     homed = all(console.status.homed[: console.status.joints])
     console.command.teleop_enable(homed)
-    wanted = linuxcnc.TRAJ_MODE_TELEOP if homed else linuxcnc.TRAJ_MODE_FREE
-    console.reach(lambda s: s.motion_mode == wanted, "jog mode")
-    speed = options.speed / 60.0
+    console.done("jog mode")
     index = AXES.index(axis) if homed else console.axes().index(axis)
-    console.command.jog(linuxcnc.JOG_INCREMENT, not homed, index, speed, options.distance)
-    console.status.wait(LOOK)
-    console.reach(lambda s: s.inpos, "jog", PATIENCE)
+    console.command.jog(linuxcnc.JOG_INCREMENT, not homed, index, options.speed / 60.0, options.distance)
+    console.done("jog")
+    console.rest()
 
 
 def _override(console: Console, options: argparse.Namespace) -> None:
@@ -250,8 +244,8 @@ def _parser() -> argparse.ArgumentParser:
     status.add_argument("--json", action="store_true", help="as one JSON object a line")
     status.add_argument("--watch", action="store_true", help="again and again")
     order("on", _on, "reset E-stop and switch on")
-    order("off", _off, "switch off")
-    order("estop", _estop, "E-stop")
+    order("off", _state(linuxcnc.STATE_OFF, "machine off"), "switch off")
+    order("estop", _state(linuxcnc.STATE_ESTOP, "E-stop"), "E-stop")
     home = order("home", _home, "home joints")
     home.add_argument("joints", type=int, nargs="*", metavar="JOINT")
     home.add_argument("--all", action="store_true", help="all joints in their sequence")
@@ -273,8 +267,11 @@ def _parser() -> argparse.ArgumentParser:
     errors = order("errors", _errors, "operator messages that come in")
     errors.add_argument("--follow", action="store_true", help="wait for more")
     order("watch", _watch, "what all clients order, with who does, and the operator messages")
-    completion = orders.add_parser("completion", help="completion for bash: source <(linuxcnc-ctl completion)")
-    completion.set_defaults(action=None)
+    text = "completion for a shell: source <(linuxcnc-ctl completion zsh), linuxcnc-ctl completion fish | source"
+    completion = orders.add_parser("completion", help=text, description=text)
+    completion.add_argument(
+        "shell", choices=SHELLS, nargs="?", default="bash", metavar="SHELL", help="bash, zsh or fish"
+    )
     return parser
 
 
@@ -282,8 +279,8 @@ def main(arguments: list[str] | None = None) -> int:
     """Entry point; returns the exit code."""
     parser = _parser()
     options = parser.parse_args(arguments)
-    if options.action is None:
-        print(bash_completion(parser))
+    if options.order == "completion":
+        print(SHELLS[options.shell](parser))
         return 0
     if options.namespace is not None:
         os.environ[namespace.VARIABLE] = options.namespace
@@ -297,6 +294,8 @@ def main(arguments: list[str] | None = None) -> int:
         return NO_MACHINE
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:  # whoever read has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 
 

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import argparse
+import cmath
+import math
 import os
 import sys
 from collections import deque
@@ -84,13 +86,21 @@ def _state(status: linuxcnc.stat) -> Text:
 def _axes(console: Console) -> Table:
     """The axes: in the coordinate system in force, in the machine, and what is left of the move."""
     status = console.status
+    machine, work, left = status.actual_position, _work_position(status), status.dtg
     table = Table("axis", "work", "machine", "to go", box=None)
     for letter in console.axes():
         at = AXES.index(letter)
-        machine = status.actual_position[at]
-        work = machine - status.g5x_offset[at] - status.g92_offset[at] - status.tool_offset[at]
-        table.add_row(letter, *(f"{value:12.4f}" for value in (work, machine, status.dtg[at])))
+        table.add_row(letter, *(f"{place[at]:12.4f}" for place in (work, machine, left)))
     return table
+
+
+def _work_position(status: linuxcnc.stat) -> list[float]:
+    """The tool's place in the coordinate system in force, as the program has it."""
+    offsets = zip(status.actual_position, status.g5x_offset, status.tool_offset, strict=True)
+    place = [at - system - tool for at, system, tool in offsets]
+    turned = complex(place[0], place[1]) * cmath.rect(1.0, -math.radians(status.rotation_xy))
+    place[:2] = turned.real, turned.imag
+    return [at - shift for at, shift in zip(place, status.g92_offset, strict=True)]
 
 
 def _process(status: linuxcnc.stat) -> Table:

@@ -1,4 +1,4 @@
-"""Completion of linuxcnc-ctl in a real bash: what pressing TAB offers."""
+"""Completion of linuxcnc-ctl in a real bash, zsh and fish: what pressing TAB offers."""
 
 import shutil
 import subprocess
@@ -8,24 +8,46 @@ import pytest
 
 from tests.support.machine import ROOT
 
-BASH = shutil.which("bash")
+pytestmark = pytest.mark.process
 
-pytestmark = [pytest.mark.process, pytest.mark.skipif(BASH is None, reason="bash is not installed")]
-
-PRESS_TAB = """
-source <("$1" -m linuxcnc.ctl completion)
+# Each script gets the interpreter, then the words of a command line, the last of which is being typed
+PRESS_TAB = {
+    "bash": """
+source <("$1" -m linuxcnc.ctl completion bash)
 COMP_WORDS=("${@:2}")
 COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
 _linuxcnc_ctl
 printf '%s\\n' "${COMPREPLY[@]}"
-"""
+""",
+    # A completing zsh offers what compadd takes; here it prints what fits the word
+    "zsh": """
+compdef() {}
+offer() { for one in "$@"; do [[ $one == "${words[CURRENT]}"* ]] && print -r -- $one; done }
+compadd() { shift; offer "$@"; }
+_describe() { offer "${(@)${(P)2}%%:*}"; }
+_files() { offer *(N); }
+eval "$($1 -m linuxcnc.ctl completion zsh)"
+words=("${@:2}") CURRENT=$(($# - 1))
+_linuxcnc_ctl
+true
+""",
+    "fish": """
+$argv[1] -m linuxcnc.ctl completion fish | source
+complete -C (string join -- ' ' $argv[2..]) | string replace -r '\\t.*' ''
+true
+""",
+}
 
 
-def offered(folder, *words):
+def offered(shell, folder, *words):
+    program = shutil.which(shell)
+    if program is None:
+        pytest.skip(f"{shell} is not installed")
+    name = ["--"] if shell == "fish" else [shell]
     result = subprocess.run(
-        [str(BASH), "-c", PRESS_TAB, "bash", sys.executable, "linuxcnc-ctl", *words],
+        [program, "-c", PRESS_TAB[shell], *name, sys.executable, "linuxcnc-ctl", *words],
         cwd=folder,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "HOME": str(folder)},
         check=True,
         capture_output=True,
         text=True,
@@ -35,6 +57,7 @@ def offered(folder, *words):
     return result.stdout.split()
 
 
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
@@ -45,8 +68,9 @@ def offered(folder, *words):
         (["jog", "x", "1", "--sp"], ["--speed"]),
         (["run", "pa"], ["part.ngc"]),
         (["mdi", "pa"], []),
+        (["completion", "z"], ["zsh"]),
     ],
 )
-def test_tab_offers_what_the_command_knows(tmp_path, words, expected):
+def test_tab_offers_what_the_command_knows(tmp_path, shell, words, expected):
     (tmp_path / "part.ngc").touch()
-    assert offered(tmp_path, *words) == expected
+    assert sorted(offered(shell, tmp_path, *words)) == sorted(expected)

@@ -62,3 +62,14 @@ def test_orders_and_messages_stand_below(task):
 def test_without_a_machine_one_line_says_so(capsys):
     assert top.main(["--once"]) == NO_MACHINE
     assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_the_work_position_is_turned_with_the_coordinate_system(task, capsys):
+    task.status.task.rotation_xy = 90.0
+    task.status.task.g92_offset = (1.0, *[0.0] * 8)
+    task.status.motion.traj.axis_mask = 0b111
+    task.publish()
+    assert top.main(["--once"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "X -1.0000 123.5000 0.0000" in text
+    assert "Y -23.5000 0.0000 0.0000" in text
