@@ -12,7 +12,7 @@ import json
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +80,18 @@ class Machine:
         )
 
 
+@dataclass(frozen=True)
+class Standing:
+    """What a machine that is on already has in force when the program begins."""
+
+    tool: int = 0
+    begin: tuple[str, ...] = ()  # blocks that bring it about
+    block_delete: bool = False
+
+
+HOME = Standing()
+
+
 @dataclass
 class Forecast:
     """What came out: seconds throughout."""
@@ -101,10 +113,13 @@ class Forecast:
 
 def forecast(
     ini: IniFile | None, program: Path, machine: Machine, tools: Sequence[Any] = (), tool_change_s: float = 0.0,
-    trace: bool = False,
+    trace: bool = False, stands: Standing = HOME,
 ) -> Forecast:  # fmt: skip
     """Run a program; InterpError where it is wrong."""
     canon = ForecastCanon(machine, tools, tool_change_s, trace)
+    canon.block_delete = stands.block_delete
+    if stands.tool > 0:
+        canon.change_tool_number(max(canon.get_external_tool_index(stands.tool), 0))
     interp = Interpreter(canon, ini)
     parameters = ini.path("RS274NGC", "PARAMETER_FILE", None) if ini else None
     if parameters and Path(parameters).exists():
@@ -113,6 +128,8 @@ def forecast(
     startup = ini.find("RS274NGC", "RS274NGC_STARTUP_CODE", "") if ini else ""
     if startup:
         interp.execute_mdi(startup)
+    for block in stands.begin:
+        interp.execute_mdi(block)
     interp.open(str(program))
     while interp.read() != INTERP_ENDFILE:
         code = interp.execute()
@@ -267,6 +284,10 @@ def parser() -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(prog="linuxcnc-forecast", description=(__doc__ or "").split("\n\n")[0])
     options.add_argument("ini", metavar="INI", type=Path, help="configuration of the machine")
     options.add_argument("program", metavar="FILE", type=Path, help="G-code program")
+    options.add_argument("--start", metavar="X,Y,...", help="where the machine stands, machine units (its home)")
+    options.add_argument("--tool", type=int, default=0, metavar="N", help="the tool in the spindle")
+    options.add_argument("--begin", metavar="BLOCK", action="append", default=[], help="blocks that come before")
+    options.add_argument("--block-delete", action="store_true", help="lines that begin with / are skipped")
     options.add_argument("--toolchange", type=float, default=0.0, metavar="S", help="seconds that a tool change takes")
     options.add_argument("--trace", type=Path, metavar="FILE.npz", help="write positions and derivatives")
     options.add_argument("--path-error", action="store_true", help="say how far the tool gets from the program's path")
@@ -274,6 +295,17 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("--json-points", type=int, default=20000, metavar="N", help="lines in it at most (20000)")
     options.add_argument("--png", type=Path, metavar="FILE.png", help="draw them")
     return options
+
+
+def standing_at(machine: Machine, text: str | None) -> Machine:
+    """The machine at the place that ``--start`` names."""
+    if text is None:
+        return machine
+    try:
+        place = [float(word) for word in text.split(",")]
+    except ValueError:
+        raise ConfigError(f"--start {text}: numbers with commas between them are needed, like 0,0,10") from None
+    return replace(machine, start=(*place, *(0.0,) * 9)[:9])
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -284,7 +316,9 @@ def main(arguments: list[str] | None = None) -> int:
         table = ini.path("EMCIO", "TOOL_TABLE", None)
         tools = tooltable.load(table) if table else []
         traced = bool(options.trace or options.png or options.path_error)
-        result = forecast(ini, options.program, Machine.from_ini(ini), tools, options.toolchange, traced)
+        machine = standing_at(Machine.from_ini(ini), options.start)
+        stands = Standing(options.tool, tuple(options.begin), options.block_delete)
+        result = forecast(ini, options.program, machine, tools, options.toolchange, traced, stands)
         if options.json:
             text = as_json(result, options.json_points)
             if options.json == "-":

@@ -50,7 +50,8 @@ class Forecast:
 
     async def _run(self, path: Path, job: int) -> None:
         """One worker, from start to its answer."""
-        worker = await start_worker(MODULE, str(self._ini), str(path), "--json", "-", nice=True)
+        stands = self._preview.present()
+        worker = await start_worker(MODULE, str(self._ini), str(path), "--json", "-", *stands, nice=True)
         try:
             async with asyncio.timeout(PATIENCE):
                 output, errors = await worker.communicate()

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gui.web import frames
+import linuxcnc
+from gui.web import frames, present
 from gui.web.calls import CallError
 from gui.web.state import State
 from gui.web.workers import Workers, end_worker
@@ -40,18 +41,6 @@ ROW = np.dtype(
 )  # fmt: skip
 """A row of the worker: mm, degrees, mm/min."""
 MOST_OUTSIDE = 100
-AXES = "XYZABCUVW"
-ROTARY_AXES = (3, 4, 5)
-MM_PER_INCH = 25.4
-INCHES = 1  # stat.program_units
-CARRIED = frozenset(
-    (
-        "G7", "G8", "G17", "G18", "G19", "G17.1", "G18.1", "G19.1", "G20", "G21", "G54", "G55", "G56", "G57",
-        "G58", "G59", "G59.1", "G59.2", "G59.3", "G90", "G91", "G90.1", "G91.1", "G93", "G94", "G95",
-        "G96", "G97", "G98", "G99",
-    )
-)  # fmt: skip
-"""Modal codes that a line of MDI finds in force."""
 
 
 @dataclass(slots=True)
@@ -99,6 +88,7 @@ class Preview:
         self._number = 0
         self._task: asyncio.Task[None] | None = None
         self._wanted: tuple[Any, ...] | None = None
+        self._modes: frozenset[str] = frozenset()  # codes that a program finds when it is started
         self._subscribers: set[Client] = set()
         self._done: list[Callable[[Path, int], None]] = []
         state.update({"preview": None})
@@ -117,10 +107,12 @@ class Preview:
     # --- when it is computed ---------------------------------------------------------------------------------------
 
     def _state_changed(self, changed: dict[str, Any]) -> None:
-        if changed.keys() & {"program", "offsets", "tools"}:
+        if changed.keys() & {"program", "offsets", "tools", "gcode_text", "interp_state"}:
             program = self._state.get("program")
+            if self._state.get("interp_state", linuxcnc.INTERP_IDLE) == linuxcnc.INTERP_IDLE:
+                self._modes = present.CARRIED.intersection(self._state.get("gcode_text", ()))
             wanted = program and (
-                program["file"], program["version"], self._state.get("offsets"), self._state.get("tools"),
+                program["file"], program["version"], self._state.get("offsets"), self._state.get("tools"), self._modes,
             )  # fmt: skip
             if wanted != self._wanted:
                 self._wanted = wanted
@@ -181,7 +173,7 @@ class Preview:
     async def _work(self, job: Job) -> dict[str, Any]:
         """Read the worker's frames; its last one."""
         worker = await self._workers.start(
-            str(job.path), "-i", str(self._ini), "--piece", str(PIECE), *self._present(modes=False)
+            str(job.path), "-i", str(self._ini), "--piece", str(PIECE), *self.present()
         )
         assert worker.stdout is not None
         try:
@@ -264,43 +256,20 @@ class Preview:
 
     async def state_at(self, path: Path, line: int) -> dict[str, Any]:
         """The state that the program has when a line is next."""
-        return await self._ask(str(path), "--state-at", str(line), *self._present(modes=False))
+        return await self._ask(str(path), "--state-at", str(line), *self.present())
 
     async def check_block(self, text: str) -> dict[str, Any]:
         """A dry run of one MDI line from where the machine stands; CallError gcode where it is wrong."""
-        return await self._ask(f"--mdi={text}", *self._present(modes=True))
+        return await self._ask(f"--mdi={text}", *self.present())
 
-    def _present(self, modes: bool) -> list[str]:
-        """How the machine stands now, as arguments of the worker; ``modes``: with its modal codes."""
-        values = self._state.values
-        if "position" not in values:
-            return []
-        arguments = [
-            f"--start={','.join(f'{value:.9g}' for value in values['position'])}",
-            f"--tool={values['tool_in_spindle']}",
-        ]
-        if modes:
-            arguments.append(f"--begin={' '.join(code for code in values['gcode_text'] if code in CARRIED)}")
-        if any(values["tool_offset"]):
-            arguments.append(f"--begin={self._tool_offset_block(values)}")
-        if values["block_delete"]:
-            arguments.append("--block-delete")
-        return arguments
-
-    def _tool_offset_block(self, values: dict[str, Any]) -> str:
-        """The tool offset in force, whatever it came from, in program units."""
-        inch = values["program_units"] == INCHES
-        offset = [
-            value * (1.0 if axis in ROTARY_AXES else self._mm / (MM_PER_INCH if inch else 1.0))
-            for axis, value in enumerate(values["tool_offset"])
-        ]
-        words = " ".join(f"{letter}{value:.6f}" for letter, value in zip(AXES, offset, strict=True) if value)
-        return f"{'G20' if inch else 'G21'} G43.1 {words}"
+    def present(self) -> list[str]:
+        """How the machine stands now, as arguments of a worker."""
+        return present.arguments(self._state.values, self._mm)
 
     async def check_file(self, path: Path) -> list[dict[str, Any]]:
         """The errors of a program: one, where the interpreter stops."""
         try:
-            await self._ask(str(path), "--check", *self._present(modes=False))
+            await self._ask(str(path), "--check", *self.present())
         except CallError as wrong:
             if wrong.code != "gcode":
                 raise

@@ -240,3 +240,15 @@ def test_the_forecast_of_the_loaded_program_tells_when_each_line_is_done(client)
     assert (np.diff(times) >= 0).all()
     assert frame["seconds"] == pytest.approx(times[-1], abs=0.01)
     client.wait(lambda state: state["forecast"]["state"] == "whole", "published")
+
+
+def test_picture_and_forecast_begin_as_the_machine_stands(client):
+    client.ready()
+    client.call("mdi.run", text="F600")
+    client.upload("bare.ngc", "G1 X10\nM2\n")
+    client.call("program.open", path="bare.ngc")
+    client.wait(lambda state: state["forecast"] and state["forecast"]["state"] == "whole", "forecast")
+    assert client.state["preview"]["state"] == "whole", "the feed is the machine's"
+    assert 1.0 < client.state["forecast"]["seconds"] < 1.2
+    client.call("mdi.run", text="G20")
+    client.wait(lambda state: state["forecast"]["seconds"] > 25.0, "ten inches take longer")
