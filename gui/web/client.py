@@ -7,7 +7,6 @@ other frames wait up to a limit, and beyond that the connection is closed.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import time
 from collections import deque
@@ -160,7 +159,8 @@ class Client:
             self.language = frame["lang"]
         self.server.hub.enter(self)
         self._dirty.clear()
-        self.send("hello", {"version": frames.VERSION, "client": self.id, "role": role.value, **self.server.greeting()})
+        own = {"version": frames.VERSION, "client": self.id, "role": role.value}
+        self.send("hello", own | self.server.greeting(self.language))
 
     async def _listen(self) -> None:
         async for message in self._socket:
@@ -205,9 +205,7 @@ class Client:
             self._refuse(number, CallError("internal", "the display's server made a mistake; its log says more"))
 
     def _refuse(self, number: int, refusal: CallError) -> None:
-        text = texts.translate(self.language, refusal.text)
-        with contextlib.suppress(KeyError, IndexError, ValueError):
-            text = text.format(**refusal.more)
+        text = texts.fill(self.language, refusal.text, refusal.more)
         self.send("error", {"id": number, "code": refusal.code, **refusal.more, "text": text})
 
     def stream(self, name: str, task: asyncio.Task[None] | None) -> None:

@@ -12,6 +12,7 @@ from gui.web.state import State
 
 if TYPE_CHECKING:
     from gui.web.client import Client
+    from gui.web.messages import Message
 
 MOST_CLIENTS = 200
 
@@ -19,7 +20,7 @@ MOST_CLIENTS = 200
 class Hub:
     """All clients of one server."""
 
-    def __init__(self, state: State, notice: Callable[[str], None]) -> None:
+    def __init__(self, state: State, notice: Callable[..., None]) -> None:
         self.state = state
         self.clients: dict[int, Client] = {}
         self.holder: Client | None = None
@@ -74,7 +75,7 @@ class Hub:
         if self.holder is not None and not force:
             raise CallError("controls", "{name} has the controls", name=self.holder.name, holder=self.holder.id)
         if self.holder is not None:
-            self._notice(f"{client.name} took the controls from {self.holder.name}")
+            self._notice("{name} took the controls from {other}", name=client.name, other=self.holder.name)
         self._give_to(client)
 
     def request(self, client: Client) -> None:
@@ -90,7 +91,7 @@ class Hub:
         receiver = self.clients.get(other)
         if receiver is None or receiver.role is not Role.OPERATOR:
             raise CallError("argument", "there is no such operator", argument="client")
-        self._notice(f"{client.name} handed the controls to {receiver.name}")
+        self._notice("{name} handed the controls to {other}", name=client.name, other=receiver.name)
         self._give_to(receiver)
 
     def release(self) -> None:
@@ -121,7 +122,7 @@ class Hub:
         for client in self.clients.values():
             client.state_changed(changed)
 
-    def tell(self, kind: str, fields: dict[str, Any]) -> None:
-        """A frame to everybody."""
+    def tell_message(self, message: Message) -> None:
+        """A message to everybody, in their languages."""
         for client in list(self.clients.values()):
-            client.send(kind, fields)
+            client.send("message", message.frame(client.language))

@@ -48,8 +48,8 @@ class Server:
         self.config = displaykeys.configuration(ini, settings) | {"wizard": False}
         self.access = Access(settings)
         self.state = State()
-        self.messages = Messages(settings.log_file, self._show_message)
-        self.hub = Hub(self.state, lambda text: self.messages.add("notice", text))
+        self.messages = Messages(settings.log_file, lambda message: self.hub.tell_message(message))
+        self.hub = Hub(self.state, self.messages.notice)
         self.state.update({"machine": "task does not answer", "tools": 1, "offsets": 1, "preferences": 1})
         self.machine = Machine(self.config["cycle_time"], self._show_status, self.messages.add)
         self.jogging = Jogging(self.machine, self.state)
@@ -112,12 +112,12 @@ class Server:
             await asyncio.to_thread(self.scope.stop)
         await asyncio.to_thread(self.machine.stop)
 
-    def greeting(self) -> dict[str, Any]:
+    def greeting(self, language: str) -> dict[str, Any]:
         """What hello brings besides the client's own."""
         return {
             "config": self.config,
             "status": self.state.values,
-            "messages": self.messages.newest(),
+            "messages": self.messages.newest(language),
             "preferences": self.preferences.values,
             "history": self.history.lines,
         }
@@ -126,9 +126,6 @@ class Server:
         for number, spindle in enumerate(values.get("spindle", [])):
             spindle |= self.hal.spindle(number) if self.hal is not None else NO_FEEDBACK
         self.state.update(values)
-
-    def _show_message(self, message: dict[str, Any]) -> None:
-        self.hub.tell("message", message)
 
     async def _post_gui(self) -> None:
         """[HAL]POSTGUI_HALFILE and POSTGUI_HALCMD, in this order, each with what is wrong as a message."""

@@ -6,8 +6,11 @@ step.
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import polib
 
@@ -38,3 +41,11 @@ def catalogue(language: str) -> dict[str, str]:
 def translate(language: str, text: str) -> str:
     """A text in a language, or itself."""
     return catalogue(language).get(text) or text
+
+
+def fill(language: str, text: str, values: Mapping[str, Any]) -> str:
+    """A text in a language with its {places} filled in, as far as there are values for all."""
+    translated = translate(language, text)
+    with contextlib.suppress(KeyError, IndexError, ValueError):
+        return translated.format(**values)
+    return translated

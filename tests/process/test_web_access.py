@@ -195,6 +195,17 @@ def test_two_operators_share_one_set_of_controls(mill):
         anna.wait(lambda state: state["control"] is None, "free")
 
 
+def test_who_took_the_controls_is_said_to_each_in_his_language(mill):
+    with WebClient(mill.web, name="Anna") as anna, WebClient(mill.web, name="Bert", lang="de") as bert:
+        anna.take()
+        bert.call("control.take", force=True)
+        anna.wait(lambda _: anna.messages, "the notice")
+        bert.wait(lambda _: bert.messages, "the notice")
+        assert anna.messages[-1]["text"] == "Bert took the controls from Anna"
+        assert bert.messages[-1]["text"] == "Bert hat Anna die Bedienung abgenommen"
+        assert bert.call("messages.read")[-1]["text"] == bert.messages[-1]["text"]
+
+
 def test_roles_come_with_tokens(guarded):
     with pytest.raises(ConnectionError, match="4401"):
         WebClient(guarded, token="wrong" * 5).__enter__()

@@ -40,11 +40,14 @@ def web_port(run: Run) -> int:
 class WebClient:
     """One page: ``state`` is what it has been told, ``call`` asks for something."""
 
-    def __init__(self, port: int, *, token: str | None = None, name: str = "test", origin: str | None = None) -> None:
+    def __init__(
+        self, port: int, *, token: str | None = None, name: str = "test", origin: str | None = None, lang: str = "en"
+    ) -> None:
         self.base = f"http://127.0.0.1:{port}"
         self.origin = origin or self.base
         self.token = token
         self.name = name
+        self.lang = lang
         self.hello: dict[str, Any] = {}
         self.state: dict[str, Any] = {}
         self.frames: list[dict[str, Any]] = []
@@ -74,7 +77,7 @@ class WebClient:
     async def _connect(self) -> None:
         self.session = aiohttp.ClientSession()
         self.socket = await self.session.ws_connect(f"{self.base}/ws", headers={"Origin": self.origin}, max_msg_size=0)
-        hello = {"t": "hello", "name": self.name} | ({"token": self.token} if self.token else {})
+        hello = {"t": "hello", "name": self.name, "lang": self.lang} | ({"token": self.token} if self.token else {})
         await self.socket.send_bytes(msgpack.packb(hello))
         message = await self.socket.receive(PATIENCE)
         if message.type is not aiohttp.WSMsgType.BINARY:

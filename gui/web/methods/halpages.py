@@ -66,7 +66,7 @@ async def set_value(caller: Caller, name: str, value: bool | int | float | str) 
         _view(caller).set(name, value)
     except HalError as reason:
         raise CallError("hal", "{reason}", reason=str(reason)) from None
-    caller.server.messages.add("notice", f"{caller.client.name} set {name} to {value}")
+    caller.server.messages.notice("{name} set {item} to {value}", name=caller.client.name, item=name, value=value)
 
 
 @method("hal.nets", Right.ANYBODY)

@@ -10,7 +10,7 @@ from gui.web.calls import Caller, CallError, Right, method
 
 @method("messages.read", Right.ANYBODY)
 async def messages(caller: Caller, before: int | None = None, count: int = 100) -> list[dict[str, Any]]:
-    return caller.server.messages.newest(count, before)
+    return caller.server.messages.newest(caller.client.language, count, before)
 
 
 @method("preferences.read", Right.ANYBODY)

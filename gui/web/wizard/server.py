@@ -37,8 +37,8 @@ class WizardServer:
         self.place = place
         self.access = Access(chosen)
         self.state = State()
-        self.messages = Messages(None, lambda message: self.hub.tell("message", message))
-        self.hub = Hub(self.state, lambda text: self.messages.add("notice", text))
+        self.messages = Messages(None, lambda message: self.hub.tell_message(message))
+        self.hub = Hub(self.state, self.messages.notice)
         self.jogging = NoJogs()
         self.programs = None
         self.config: dict[str, Any] = {
@@ -53,11 +53,11 @@ class WizardServer:
         self._finish = finish
         self.state.update({"machine": "no machine runs"})
 
-    def greeting(self) -> dict[str, Any]:
+    def greeting(self, language: str) -> dict[str, Any]:
         """What hello brings besides the client's own."""
         return {
-            "config": self.config, "status": self.state.values, "messages": self.messages.newest(), "preferences": {},
-            "history": [],
+            "config": self.config, "status": self.state.values, "messages": self.messages.newest(language),
+            "preferences": {}, "history": [],
         }  # fmt: skip
 
     async def start(self) -> None:

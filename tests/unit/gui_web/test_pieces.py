@@ -10,7 +10,7 @@ import pytest
 
 import gui.web.methods
 import gui.web.wizard.methods  # noqa: F401  registers its methods too
-from gui.web import frames, tooltable
+from gui.web import frames, texts, tooltable
 from gui.web.access import Access, Role
 from gui.web.calculator import calculate
 from gui.web.calls import METHODS, Caller, CallError, Method, Right, _parameters, perform
@@ -324,9 +324,9 @@ def test_messages_are_kept_shown_and_written_to_the_log_file(tmp_path):
     messages = Messages(tmp_path / "log.txt", shown.append)
     for number in range(5):
         messages.add("error", f"number\n{number}", serial=number)
-    assert [message["id"] for message in messages.newest(2)] == [4, 5]
-    assert [message["id"] for message in messages.newest(2, before=4)] == [2, 3]
-    assert shown[0]["text"] == "number\n0"
+    assert [message["id"] for message in messages.newest(texts.ENGLISH, 2)] == [4, 5]
+    assert [message["id"] for message in messages.newest(texts.ENGLISH, 2, before=4)] == [2, 3]
+    assert shown[0].text == "number\n0"
     assert (tmp_path / "log.txt").read_text().splitlines()[4].endswith("error: number 4")
 
 
@@ -334,4 +334,4 @@ def test_a_log_file_that_cannot_be_written_stops_nothing(tmp_path):
     messages = Messages(tmp_path / "no" / "such" / "folder", lambda message: None)
     messages.add("error", "one")
     messages.add("error", "two")
-    assert len(messages.newest()) == 2
+    assert len(messages.newest(texts.ENGLISH)) == 2

@@ -16,7 +16,7 @@ UNTRANSLATED = {"{reason}"}  # the machine's own words
 
 
 def spoken():
-    """The texts of all refusals, and of the wizard's form."""
+    """The texts of all refusals and notices, and of the wizard's form."""
     found = {question.text for question in questions.form()}
     for path in ROOT.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
@@ -24,6 +24,8 @@ def spoken():
                 text = node.args[1]
                 branches = [text.body, text.orelse] if isinstance(text, ast.IfExp) else [text]
                 found |= {branch.value for branch in branches if isinstance(branch, ast.Constant)}
+            if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in ("notice", "_notice") and node.args:
+                found |= {node.args[0].value} if isinstance(node.args[0], ast.Constant) else set()
     return found - UNTRANSLATED
 
 
@@ -47,6 +49,12 @@ def test_translations_fill_in_the_same_places(language):
 def test_catalogues_say_everything_once(path):
     ids = [entry.msgid for entry in polib.pofile(str(path))]
     assert len(ids) == len(set(ids))
+
+
+def test_places_are_filled_in_after_translation():
+    taken = "{name} took the controls from {other}"
+    assert texts.fill("de", taken, {"name": "Anna", "other": "Bert"}) == "Anna hat Bert die Bedienung abgenommen"
+    assert texts.fill("de", "joint {0} at 5 {", {}) == "joint {0} at 5 {"
 
 
 def test_unknown_languages_are_english():
