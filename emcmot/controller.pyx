@@ -28,7 +28,6 @@ from emcmot.probe cimport probe_cycle
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport spindle_cycle
 from emcmot.state cimport LINES, Axis, Joint, Motion
-from emcmot.status cimport fill_status
 from emcmot.synchronised cimport synchronised_cycle
 from emcmot.tp.tp cimport (
     TP_OK,
@@ -339,4 +338,3 @@ cdef void controller(Motion* m) noexcept nogil:
     end_jogs(m)
     write_joints(m)
     write_pins(m)
-    fill_status(m)

@@ -15,7 +15,6 @@ from emcmot.homing cimport update_homed
 from emcmot.kins.kinematics cimport KinematicsModule
 from emcmot.pins cimport pins_of
 from emcmot.state cimport Joint, Motion
-from emcmot.status cimport fill_status
 from emcmot.tp.tp cimport tp_create, tp_free, tp_get_status, tp_set_cycle_time
 from emcmot.world cimport refresh_planner_limits
 
@@ -109,4 +108,3 @@ cdef class Core:
         refresh_planner_limits(m)
         update_homed(m)
         tp_get_status(m.tp, &m.tp_status)
-        fill_status(m)

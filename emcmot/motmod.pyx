@@ -7,7 +7,7 @@ of the NML buffers.
 
 from libc.stdint cimport int32_t, int64_t, uint64_t, uintptr_t
 from libc.stdlib cimport calloc, free
-from libc.string cimport memmove
+from libc.string cimport memmove, memset
 from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 
 from emcmot._messages cimport EMCMOT_COMMAND, EMCMOT_ERROR, EMCMOT_STATUS
@@ -16,8 +16,12 @@ from emcmot.controller cimport controller
 from emcmot.core cimport Core
 from emcmot.kins.kinematics cimport KinematicsModule
 from emcmot.state cimport Motion
-from hal.cell cimport hal_at, hal_cell, hal_pin
-from nml._shm cimport pulse_count, queue_pop, queue_push, slot_write
+from emcmot.status cimport fill_status
+from hal.cell cimport hal_at, hal_pin
+from nml._layout cimport SLOTS
+from nml._shm cimport pulse_count, queue_pop, queue_push, slot_begin, slot_commit
+
+from operator import itemgetter
 
 from emcmot.core import LIMITS
 from emcmot.layout import same_size
@@ -42,30 +46,35 @@ DEBUG_PARAMETERS = (
     *((f"motion.debug-s32-{n}", HAL_S32) for n in range(2)),
 )
 
-cdef enum Width:
+cdef enum:                # how a pin and its member are copied
     WIDTH_FLOAT
     WIDTH_INT
     WIDTH_BIT
     WIDTH_NUMBER         # a double, of a pin that is a whole number or a bit
+    ALL_WIDTHS
 
 WIDTHS = {"float": WIDTH_FLOAT, "bit": WIDTH_BIT, "s32": WIDTH_INT, "u32": WIDTH_INT}
 
 ctypedef struct Binding:
     hal_pin pin
     void* at             # a double, or an int32_t
-    int width
-    int32_t seen         # of an IO pin: what was read; written back only where motion changed it
+
+ctypedef struct Bindings:    # the pins of one direction, those of a width side by side
+    Binding* rows
+    int end[ALL_WIDTHS]      # of the rows of each width
+
+ctypedef struct Both:    # an IO pin, which is a bit
+    Binding binding
+    int32_t seen         # what was read; written back only where motion changed it
 
 ctypedef struct Servo:   # everything that the two functions touch
     Motion* m
     void* commands
     void* status
     void* errors
-    Binding* inputs
-    int input_count
-    Binding* outputs
-    int output_count
-    Binding* both
+    Bindings inputs
+    Bindings outputs
+    Both* both
     int both_count
     int64_t last_ns
     int64_t handled_ns   # when commands were taken last
@@ -79,46 +88,41 @@ cdef int64_t now_ns() noexcept nogil:
     return t.tv_sec * 1000000000LL + t.tv_nsec
 
 
-cdef inline void take(Binding* b) noexcept nogil:
-    cdef hal_cell* cell = hal_at(b.pin)
-    if b.width == WIDTH_FLOAT:
-        (<double*>b.at)[0] = cell.f
-    elif b.width == WIDTH_BIT:
-        (<int32_t*>b.at)[0] = cell.b != 0
-    elif b.width == WIDTH_NUMBER:
-        (<double*>b.at)[0] = cell.s
-    else:
-        (<int32_t*>b.at)[0] = cell.s
-
-
-cdef inline void give(const Binding* b) noexcept nogil:
-    cdef hal_cell* cell = hal_at(b.pin)
-    if b.width == WIDTH_FLOAT:
-        cell.f = (<double*>b.at)[0]
-    elif b.width == WIDTH_BIT:
-        cell.b = (<int32_t*>b.at)[0] != 0
-    elif b.width == WIDTH_NUMBER:
-        cell.s = <int32_t>(<double*>b.at)[0]
-    else:
-        cell.s = (<int32_t*>b.at)[0]
-
-
 cdef void read_pins(Servo* s) noexcept nogil:
+    cdef const Binding* rows = s.inputs.rows
+    cdef const int* end = s.inputs.end
+    cdef Binding* bit
     cdef int n
-    for n in range(s.input_count):
-        take(&s.inputs[n])
+    for n in range(end[WIDTH_FLOAT]):
+        (<double*>rows[n].at)[0] = hal_at(rows[n].pin).f
+    for n in range(end[WIDTH_FLOAT], end[WIDTH_INT]):
+        (<int32_t*>rows[n].at)[0] = hal_at(rows[n].pin).s
+    for n in range(end[WIDTH_INT], end[WIDTH_BIT]):
+        (<int32_t*>rows[n].at)[0] = hal_at(rows[n].pin).b != 0
+    for n in range(end[WIDTH_BIT], end[WIDTH_NUMBER]):
+        (<double*>rows[n].at)[0] = hal_at(rows[n].pin).s
     for n in range(s.both_count):
-        take(&s.both[n])
-        s.both[n].seen = (<int32_t*>s.both[n].at)[0]
+        bit = &s.both[n].binding
+        s.both[n].seen = (<int32_t*>bit.at)[0] = hal_at(bit.pin).b != 0
 
 
 cdef void write_pins(Servo* s) noexcept nogil:
+    cdef const Binding* rows = s.outputs.rows
+    cdef const int* end = s.outputs.end
+    cdef Binding* bit
     cdef int n
-    for n in range(s.output_count):
-        give(&s.outputs[n])
+    for n in range(end[WIDTH_FLOAT]):
+        hal_at(rows[n].pin).f = (<double*>rows[n].at)[0]
+    for n in range(end[WIDTH_FLOAT], end[WIDTH_INT]):
+        hal_at(rows[n].pin).s = (<int32_t*>rows[n].at)[0]
+    for n in range(end[WIDTH_INT], end[WIDTH_BIT]):
+        hal_at(rows[n].pin).b = (<int32_t*>rows[n].at)[0] != 0
+    for n in range(end[WIDTH_BIT], end[WIDTH_NUMBER]):
+        hal_at(rows[n].pin).s = <int32_t>(<double*>rows[n].at)[0]
     for n in range(s.both_count):
-        if (<int32_t*>s.both[n].at)[0] != s.both[n].seen:
-            give(&s.both[n])
+        bit = &s.both[n].binding
+        if (<int32_t*>bit.at)[0] != s.both[n].seen:
+            hal_at(bit.pin).b = (<int32_t*>bit.at)[0] != 0
 
 
 cdef void send_errors(Servo* s) noexcept nogil:
@@ -152,6 +156,15 @@ cdef void command_handler(void* arg, long period_ns) noexcept nogil:
         taken += 1
 
 
+cdef void publish(Servo* s) noexcept nogil:
+    """Write the status where its readers find it. What this machine does not have is cleared once in every slot."""
+    cdef void* slot = slot_begin(s.status)
+    if s.m.heartbeat <= SLOTS:
+        memset(slot, 0, sizeof(EMCMOT_STATUS))
+    fill_status(<EMCMOT_STATUS*>slot, s.m)
+    slot_commit(s.status, sizeof(EMCMOT_STATUS))
+
+
 cdef void motion_controller(void* arg, long period_ns) noexcept nogil:
     """HAL function motion-controller."""
     cdef Servo* s = <Servo*>arg
@@ -163,7 +176,7 @@ cdef void motion_controller(void* arg, long period_ns) noexcept nogil:
     controller(m)
     write_pins(s)
     send_errors(s)
-    slot_write(s.status, &m.status, sizeof(EMCMOT_STATUS))
+    publish(s)
     m.servo_time = (now_ns() - start) * 1e-9
     if m.servo_time > m.servo_time_max:
         m.servo_time_max = m.servo_time
@@ -179,8 +192,8 @@ cdef class Motmod(Core):
         self.channels = []
 
     def __dealloc__(self):
-        free(self.servo.inputs)
-        free(self.servo.outputs)
+        free(self.servo.inputs.rows)
+        free(self.servo.outputs.rows)
         free(self.servo.both)
 
     def connect(self):
@@ -210,9 +223,9 @@ cdef class Motmod(Core):
             groups[pin.direction].append((made.address, pin.address, WIDTHS[pin.type]))
         for cell, at, kind, direction in self.kinematics.bindings:
             groups[direction].append((cell, at, WIDTH_FLOAT if kind == "float" else WIDTH_NUMBER))
-        self.servo.inputs, self.servo.input_count = bindings(groups["IN"]), len(groups["IN"])
-        self.servo.outputs, self.servo.output_count = bindings(groups["OUT"]), len(groups["OUT"])
-        self.servo.both, self.servo.both_count = bindings(groups["IO"]), len(groups["IO"])
+        sort_by_width(&self.servo.inputs, groups["IN"])
+        sort_by_width(&self.servo.outputs, groups["OUT"])
+        self.servo.both, self.servo.both_count = both(groups["IO"]), len(groups["IO"])
         for name, kind in DEBUG_PARAMETERS:
             comp.param(name, kind, HAL_RO)
 
@@ -229,15 +242,27 @@ cdef class Motmod(Core):
         comp.function("motion-controller", <uintptr_t><void*>motion_controller, arg)
 
 
-cdef Binding* bindings(list rows) except? NULL:
-    """A C array of (address of the HAL pin, address of the member, Width)."""
-    cdef Binding* made = <Binding*>calloc(len(rows) + 1, sizeof(Binding))
+cdef void sort_by_width(Bindings* made, list rows) except *:
+    """Bindings of (address of the HAL pin, address of the member, Width)."""
+    made.rows = <Binding*>calloc(len(rows) + 1, sizeof(Binding))
+    if made.rows == NULL:
+        raise MemoryError
+    rows = sorted(rows, key=itemgetter(2))
+    for n, (pin, at, width) in enumerate(rows):
+        made.rows[n] = Binding(<hal_pin><uintptr_t>pin, <void*><uintptr_t>at)
+    for width in range(ALL_WIDTHS):
+        made.end[width] = sum(row[2] <= width for row in rows)
+
+
+cdef Both* both(list rows) except? NULL:
+    """Those of the pins that motion and others write."""
+    cdef Both* made = <Both*>calloc(len(rows) + 1, sizeof(Both))
     if made == NULL:
         raise MemoryError
     for n, (pin, at, width) in enumerate(rows):
-        made[n].pin = <hal_pin><uintptr_t>pin
-        made[n].at = <void*><uintptr_t>at
-        made[n].width = width
+        if width != WIDTH_BIT:
+            raise HalError(f"motmod: IO pin {n} is no bit")
+        made[n].binding = Binding(<hal_pin><uintptr_t>pin, <void*><uintptr_t>at)
     return made
 
 

@@ -15,6 +15,7 @@ from emcmot.controller cimport controller
 from emcmot.core cimport Core
 from emcmot.homing cimport HOME_INDEX_NO_ENCODER_RESET
 from emcmot.state cimport Joint
+from emcmot.status cimport fill_status
 
 import numpy as np
 
@@ -55,6 +56,7 @@ cdef class Motion(Core):
     cdef public double worst_acc
     cdef public double worst_jerk  # of joints whose own moves have a jerk limit
     cdef Ground ground[MAX_JOINTS]
+    cdef EMCMOT_STATUS last_status
     cdef dict _by_name
     cdef int _serial
 
@@ -63,6 +65,7 @@ cdef class Motion(Core):
         numbers.setdefault("num_joints", kinematics.joints + numbers.get("num_extrajoints", 0))
         super().__init__(kinematics, servo_period, **numbers)
         self._by_name = {pin.name: pin for pin in self.pins}
+        fill_status(&self.last_status, self.m)
         self.loopback = True
 
     def __getitem__(self, name):
@@ -162,6 +165,7 @@ cdef class Motion(Core):
     cdef void period(self) noexcept nogil:
         self.m.host_now += self.m.dt
         controller(self.m)
+        fill_status(&self.last_status, self.m)
         self.measure()
         if self.loopback:
             self.turn_ground()
@@ -204,7 +208,7 @@ cdef class Motion(Core):
     @property
     def status(self):
         """The EMCMOT_STATUS message of the last period."""
-        return Status.from_bytes((<char*>&self.m.status)[: sizeof(EMCMOT_STATUS)])
+        return Status.from_bytes((<char*>&self.last_status)[: sizeof(EMCMOT_STATUS)])
 
     def errors(self):
         """The texts since the last call."""

@@ -7,7 +7,7 @@ messages. Bit-like members are 0 or 1.
 
 from libc.stdint cimport int8_t, int32_t, int64_t
 
-from emcmot._messages cimport EMCMOT_ERROR, EMCMOT_STATUS, MAX_AIO, MAX_AXES, MAX_DIO, MAX_JOINTS, MAX_SPINDLES
+from emcmot._messages cimport EMCMOT_ERROR, MAX_AIO, MAX_AXES, MAX_DIO, MAX_JOINTS, MAX_SPINDLES
 from emcmot.free_planner cimport FreePlanner
 from emcmot.kins.kinematics cimport Kinematics
 from emcmot.tp.tp cimport Tp, TpIo, TpStatus
@@ -57,7 +57,6 @@ ctypedef struct Joint:
     double min_ferror
     double max_ferror
     double backlash
-    Compensation comp
     # inputs
     double motor_pos_fb
     double posthome_cmd
@@ -105,6 +104,7 @@ ctypedef struct Joint:
     int wheel_refused        # it was said why the wheel does not move this joint
     double jog_vel           # speed that the running jog asks for
     Homing home
+    Compensation comp        # last: the memory that every period touches lies together
 
 ctypedef struct Axis:
     double max_limit
@@ -319,4 +319,3 @@ ctypedef struct Motion:
     double servo_time_max
     EMCMOT_ERROR errors[ERRORS]
     int error_count
-    EMCMOT_STATUS status

@@ -11,6 +11,8 @@ from nml._layout cimport Head
 # For a thread that is the only writer or the only reader of its buffer.
 cdef size_t queue_pop(void* buffer, void* dst, size_t capacity) noexcept nogil
 cdef int queue_push(void* buffer, const void* src, size_t size) noexcept nogil
+cdef void* slot_begin(void* buffer) noexcept nogil
+cdef void slot_commit(void* buffer, size_t size) noexcept nogil
 cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil
 cdef uint64_t write_count(void* buffer) noexcept nogil
 cdef uint64_t pulse_count(void* buffer) noexcept nogil

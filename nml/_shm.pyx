@@ -29,19 +29,31 @@ cdef uint64_t VERSION = LAYOUT_VERSION
 SLOT, QUEUE, BROADCAST = KIND_SLOT, KIND_QUEUE, KIND_BROADCAST
 
 
-cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil:
-    """Publish a message of at most ``capacity`` bytes. For the only writer of the buffer."""
+cdef void* slot_begin(void* buffer) noexcept nogil:
+    """Where the next message is to be written; an older one of this buffer lies there. For the only writer."""
+    cdef Head* head = <Head*>buffer
+    cdef Record* slot = slot_of(head, head.write_counter + 1)
+    nml_store(&slot.id, 0)
+    nml_fence()  # SYNC POINT: a reader that sees new bytes also sees id 0
+    return slot + 1
+
+
+cdef void slot_commit(void* buffer, size_t size) noexcept nogil:
+    """Publish what was written since ``slot_begin``: a message of at most ``capacity`` bytes."""
     cdef Head* head = <Head*>buffer
     cdef uint64_t number = head.write_counter + 1
     cdef Record* slot = slot_of(head, number)
-    nml_store(&slot.id, 0)
-    nml_fence()  # SYNC POINT: a reader that sees new bytes also sees id 0
     slot.length = size
     slot.time_ns = now_ns()
-    memcpy(slot + 1, src, size)
     nml_store(&slot.id, number)
     nml_store(&head.write_counter, number)  # SYNC POINT: published
     nml_wake(&head.signal, &head.waiters)
+
+
+cdef void slot_write(void* buffer, const void* src, size_t size) noexcept nogil:
+    """Publish a message of at most ``capacity`` bytes. For the only writer of the buffer."""
+    memcpy(slot_begin(buffer), src, size)
+    slot_commit(buffer, size)
 
 
 cdef uint64_t write_count(void* buffer) noexcept nogil:
