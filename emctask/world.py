@@ -16,7 +16,6 @@ from nml.emc.emcmot import MAX_SPINDLES, Enables
 from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPED, CANON_UNITS_INCHES, Tool
 from rs274ngc.moves import MoveCanon
 
-
 UNSET_TOLERANCE_MM = 0.0254
 """What LinuxCNC shows as path tolerance until a program sets one; the planner has none then."""
 

@@ -12,6 +12,7 @@ import signal
 
 from linuxcnc import takedown
 from linuxcnc.instance import Instance
+from linuxcnc.process import show_as
 
 IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 DISMISSED = b"."
@@ -37,6 +38,7 @@ class Guard:
         """In the twin: wait for the launcher's end; never returns."""
         try:
             os.setsid()
+            show_as(["linuxcnc-guard"])
             for number in IGNORED:
                 signal.signal(number, signal.SIG_IGN)
             if os.read(read_end, 1) != DISMISSED:

@@ -7,6 +7,7 @@ open. Its output goes into a file, whose lines the launcher passes on.
 from __future__ import annotations
 
 import atexit
+import ctypes
 import os
 import runpy
 import signal
@@ -23,6 +24,7 @@ from nml import clock
 LAST_WORDS = 1.0  # host seconds before its end in which a process tells why it ends
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # what the launcher treats in its own way
 FIRST_OWN_FD = 3
+ARGUMENTS = (45, 46)  # where the command line begins and ends: fields of /proc/PID/stat after the name
 
 
 class Process(Protocol):
@@ -84,7 +86,7 @@ def _become(command: Command, folder: Path, output: int | None) -> NoReturn:
             os.dup2(output, 2)
         os.closerange(FIRST_OWN_FD, os.sysconf("SC_OPEN_MAX"))
         os.chdir(folder)
-        Path("/proc/self/comm").write_text(command.name)
+        show_as(command.words)
         if not sys.flags.safe_path:
             del sys.path[0]  # the launcher's script
         assert command.module is not None
@@ -102,6 +104,15 @@ def _become(command: Command, folder: Path, output: int | None) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+def show_as(words: list[str]) -> None:
+    """Be listed by ``ps``, ``pgrep -f`` and ``killall`` as this command line, cut to the length of the launcher's."""
+    fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
+    start, end = (int(fields[number]) for number in ARGUMENTS)
+    text = "\0".join(words).encode()[: end - start - 1]
+    ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
+    Path("/proc/self/comm").write_text(Path(words[0]).name)
 
 
 @dataclass(slots=True)

@@ -101,20 +101,18 @@ def test_when_the_realtime_host_dies_the_program_ends_with_an_error(tmp_path):
     assert second.finish() == 0, second.errors
 
 
+def guards() -> set[int]:
+    """The launcher's guards, by their process numbers."""
+    return {pid for pid, command in processes() if command.startswith("linuxcnc-guard")}
+
+
 def test_a_guard_that_dies_is_replaced(tmp_path):
     ini = copy_mill(tmp_path)
     with running(ini, speed=SPEED) as run:
         run.port()
-        ours = {pid for pid, command in processes() if "linuxcnc.launcher" in command}
-        ours -= {run.process.pid, *run.pids().values()}
-        (guard,) = ours
+        (guard,) = guards()
         os.kill(guard, signal.SIGKILL)
-
-        def replaced() -> bool:
-            found = {pid for pid, command in processes() if "linuxcnc.launcher" in command}
-            return len(found - {run.process.pid, guard, *run.pids().values()}) == 1
-
-        wait_until(replaced, "a new guard")
+        wait_until(lambda: len(guards() - {guard}) == 1, "a new guard")
         run.process.kill()
         wait_until(lambda: not processes(), "the end of all processes", 15.0)
     assert traces() == []
@@ -124,7 +122,7 @@ def test_leftovers_of_a_run_whose_launcher_and_guard_were_killed_are_removed(tmp
     ini = copy_mill(tmp_path)
     with running(ini, speed=SPEED) as run:
         run.port()
-        launchers = [pid for pid, command in processes() if "linuxcnc.launcher" in command]
+        launchers = [run.process.pid, *guards()]
         for pid in launchers:
             os.kill(pid, signal.SIGSTOP)
         for pid in launchers:
