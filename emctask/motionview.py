@@ -11,12 +11,15 @@ from typing import Any
 from emctask.config import MachineConfig
 from emctask.layout import Copy, Span, image
 from nml.emc import EMC_JOINT_STAT, EMC_STAT
+from nml.emc.constants import EmcJointType
 from nml.emc.emcmot import (
     EMCMOT_AXIS_STATUS,
     EMCMOT_JOINT_STATUS,
     EMCMOT_SPINDLE_STATUS,
     EMCMOT_STATUS,
     MAX_DIO,
+    MAX_JOINTS,
+    MAX_SPINDLES,
     Enables,
     JointFlag,
     MotionFlag,
@@ -61,6 +64,23 @@ _J_ENABLE, _J_INPOS, _J_FAULT = int(JointFlag.ENABLE), int(JointFlag.INPOS), int
 _J_MIN_HARD, _J_MAX_HARD = int(JointFlag.MIN_HARD_LIMIT), int(JointFlag.MAX_HARD_LIMIT)
 _FS, _AF, _FH, _SS = int(Enables.FS), int(Enables.AF), int(Enables.FH), int(Enables.SS)
 
+ABSENT_JOINT = {
+    "jointType": EmcJointType.LINEAR,
+    "units": 1.0,
+    "minPositionLimit": -1.0,
+    "maxPositionLimit": 1.0,
+    "maxFerror": 1.0,
+    "minFerror": 1.0,
+    "inpos": 1,
+}
+"""What clients see of a joint that the machine does not have; as in LinuxCNC, what such a joint begins with."""
+ABSENT_SPINDLE = {"spindle_scale": 1.0, "brake": 1}
+
+
+def _set(record: Any, fields: dict[str, Any]) -> None:
+    for name, value in fields.items():
+        setattr(record, name, value)
+
 
 class MotionView:
     """Writes the ``motion`` part of one EMC_STAT."""
@@ -76,6 +96,10 @@ class MotionView:
         self._traj.maxAcceleration = config.max_acceleration
         for axis in range(9):
             stat.motion.axis[axis].axis = axis
+        for number in range(len(config.joints), MAX_JOINTS):
+            _set(stat.motion.joint[number], ABSENT_JOINT)
+        for number in range(len(config.spindles), MAX_SPINDLES):
+            _set(stat.motion.spindle[number], ABSENT_SPINDLE)
 
     def fill(self, source: bytearray) -> None:
         """Take over motion's status."""
