@@ -28,11 +28,11 @@ cdef enum:
     REFRESH_SHARE = 16           # longer ones: when this share of the path is new
     FRESH_SPANS = 256            # so many are looked at without need, lest need finds more than a period can bear
 
-cdef double NO_WAY = 1e-13       # u
 cdef double SAME_SPEED = 1e-12   # relative
 cdef double STANDING = 1e-24     # w below which braking has come to rest: the rest is rounding
 cdef double ROUNDING = 4e-16     # of u, relative to the length of its span
-cdef double HARDEST = 1.0 + 1e-8 # times the limit: braking onto a point, to within rounding
+cdef double ARRIVED = 4.0 * ROUNDING # the same, for its end: a stop may fall short by half of this
+cdef double HARDER = 1e-7        # share of the limit over a period that braking onto a point may add for rounding
 
 ctypedef struct Phase:
     double acceleration      # d2u/dt2
@@ -138,7 +138,7 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
         if _seg(tp, span.seg).kind == TP_TAP and tp.u == 0.0:
             run_tap(tp, span)
             return
-        if tp.u >= span.h - NO_WAY:
+        if tp.u >= span.h * (1.0 - ARRIVED):
             if not next_span(tp, span):
                 return
             continue
@@ -175,12 +175,13 @@ cdef Phase _line_phase(TpState* tp, const Span* span) noexcept nogil:
     cdef double x = span.h - tp.u, a = span.acc
     cdef double limit = exit_limit(tp, tp.active)
     cdef double braking = limit + 2.0 * a * x        # w from which full braking arrives at the limit
-    cdef double target = target_w(tp)
+    cdef double target = target_w(tp), hardest
     if tp.w > target * (1.0 + SAME_SPEED):
         phase.acceleration = -a
         phase.way = fmin(x, (tp.w - target) / (2.0 * a))
-    elif tp.w >= braking * (1.0 - SAME_SPEED) or braking - tp.w <= 4.0 * a * (NO_WAY + ROUNDING * span.h):
-        phase.acceleration = fmax(-HARDEST * a, fmin(0.0, (limit - tp.w) / (2.0 * x)))
+    elif tp.w >= braking * (1.0 - SAME_SPEED) or braking - tp.w <= 4.0 * a * ROUNDING * span.h:
+        hardest = a * (1.0 + HARDER * fmax(1.0, 0.5 * tp.dt * sqrt(tp.w) / x))
+        phase.acceleration = fmax(-hardest, fmin(0.0, (limit - tp.w) / (2.0 * x)))
         phase.way = x
     elif tp.w < target * (1.0 - SAME_SPEED):
         phase.acceleration = a

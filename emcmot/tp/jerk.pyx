@@ -22,7 +22,8 @@ from emcmot.tp.tp cimport TP_TAP
 
 cdef enum:
     GATHERED_PER_PERIOD = 128    # spans
-    HALVINGS = 10                # of the range of accelerations, where the wanted one is too large
+    HALVINGS = 10                # of the range of accelerations, where the wanted one is too large,
+    SLOW_HALVINGS = 32           # and where the machine is slow: the path ahead may ask for far less than one period's jerk brings
     SPANS_PER_PERIOD = 5000      # bound of the way of one period
 
 cdef enum Verdict:
@@ -30,7 +31,7 @@ cdef enum Verdict:
     TOO_FAST = 1                 # for a stretch ahead
     TOO_HARD = 2                 # braking: it cannot be taken back in time
 
-cdef double NO_WAY = 1e-12       # u
+cdef double ROUNDING = 4e-15     # of u, relative to the length of its span
 cdef double STANDING = 0.1    # jerk dt^2: a held machine that is no faster stands
 cdef double LANDING = 0.2     # jerk dt^3 from the end, the rest of the way is gone in one period
 cdef double ALIKE = 0.85         # ratio of limits from which two spans may be one stretch
@@ -215,7 +216,7 @@ cdef double _choose(TpState* tp, double v, double target) noexcept nogil:
         high = wanted
     else:
         low = wanted
-    for k in range(HALVINGS):
+    for k in range(HALVINGS if v > change * dt else SLOW_HALVINGS):
         middle = 0.5 * (low + high)
         verdict = _outcome(tp, v, middle)
         if verdict == TOO_FAST or (verdict == FEASIBLE and middle > wanted):
@@ -236,7 +237,7 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
         tp.draining = 0
     if tp.w == 0.0 and waiting(tp):
         return
-    if tp.u >= span.h - NO_WAY and not _go_on(tp, span):
+    if tp.u >= span.h * (1.0 - ROUNDING) and not _go_on(tp, span):
         return
     span = _span(tp, tp.active)
     if tp.w == 0.0 and tp.u == 0.0 and (tp.draining or waiting(tp)):
@@ -259,8 +260,17 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
     tp.a = a if v > 0.0 else fmax(0.0, a)
     tp.w = fmax(0.0, v) ** 2
     if _ends(tp, 0) and _stretch(tp, 0).length <= LANDING * least * dt and v <= least:
-        way = _stretch(tp, 0).length + NO_WAY
+        way = _rest(tp)
     _go(tp, fmax(0.0, way))
+
+
+cdef double _rest(TpState* tp) noexcept nogil:
+    """Way to the end of the first stretch, summed anew: its length has lost digits on the way."""
+    cdef double way = -tp.u
+    cdef int64_t index
+    for index in range(tp.active, _stretch(tp, 0).last + 1):
+        way += _span(tp, index).h
+    return way
 
 
 cdef int _ends(TpState* tp, int k) noexcept nogil:
@@ -299,7 +309,7 @@ cdef void _go(TpState* tp, double way) noexcept nogil:
         tp.u += room
         _stretch(tp, 0).length -= room
         way -= room
-        if tp.u < span.h - NO_WAY or not _go_on(tp, span):
+        if tp.u < span.h * (1.0 - ROUNDING) or not _go_on(tp, span):
             return
         if way <= 0.0:
             return

@@ -18,7 +18,7 @@ cdef enum:
 
 cdef double SHARE = 0.5          # of the tolerance that chords may use
 cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
-cdef double UNLIKE = 4.0         # ratio of the lengths of neighbours above which a run ends
+cdef double ALIKE = 0.75         # ratio of the tolerances of neighbours below which a run ends
 cdef double GROWTH = 1.3         # of one chord over the one before
 
 
@@ -40,9 +40,9 @@ cdef int can_join(const Segment* before, const Segment* raw) noexcept nogil:
         return 0
     if raw.motion_type != before.motion_type or raw.enables != before.enables or raw.unit != before.unit:
         return 0
-    if raw.vel != before.vel or raw.tolerance != before.tolerance or raw.tolerance <= 0.0:
+    if raw.vel != before.vel or raw.tolerance <= 0.0 or before.tolerance <= 0.0:
         return 0
-    if raw.length > UNLIKE * before.length or before.length > UNLIKE * raw.length:
+    if fmin(raw.tolerance, before.tolerance) < ALIKE * fmax(raw.tolerance, before.tolerance):
         return 0
     for i in range(AXES):
         bend += (raw.rate[i] - before.rate[i]) * (raw.rate[i] - before.rate[i])
@@ -104,14 +104,15 @@ cdef double _deviation(const TpState* tp, int64_t first, int count, double longe
     cdef const double* end = _raw(tp, first + count - 1).end
     cdef const double* q
     cdef double chord[AXES]
-    cdef double square = 0.0, allowed, along, off, t, d, last = 0.0, worst = 0.0
+    cdef double square = 0.0, allowed = INFINITY, along, off, t, d, last = 0.0, worst = 0.0
     cdef int i, k
     for i in range(AXES):
         chord[i] = end[i] - start[i]
         square += chord[i] * chord[i]
     if square > longest * longest or square == 0.0:
         return -1.0
-    allowed = SHARE * _raw(tp, first).tolerance
+    for k in range(count):
+        allowed = fmin(allowed, SHARE * _raw(tp, first + k).tolerance)
     allowed *= allowed
     for k in range(count - 1):
         q = _raw(tp, first + k).end
@@ -147,5 +148,6 @@ cdef void _make_chord(const TpState* tp, Segment* seg, int64_t first, int count)
         seg.rate[i] = (seg.end[i] - seg.start[i]) / seg.length
     for k in range(1, count):
         seg.vel_max = fmin(seg.vel_max, _raw(tp, first + k).vel_max)
+        seg.tolerance = fmin(seg.tolerance, _raw(tp, first + k).tolerance)
         if _raw(tp, first + k).acc > 0.0:
             seg.acc = fmin(seg.acc, _raw(tp, first + k).acc)

@@ -28,7 +28,7 @@ cdef enum:
     JOINT_HALVINGS = 8           # of a span, until
     MOTION_TRAVERSE = 1
 
-cdef double NO_WAY = 1e-12       # u; spans shorter than this are left out
+cdef double NO_WAY = 1e-14       # of the length of a move; spans shorter than this are left out
 cdef double ARC_SPAN_ANGLE = 0.04
 cdef double ARC_MISS = 1.75      # angle^2 times this: share of an acceleration that interpolation on an arc may miss
 cdef double UNLIKE = 8.0         # accelerations of axes that arcs take into account in full
@@ -146,7 +146,7 @@ cdef void extend(TpState* tp) noexcept nogil:
             steps += take_segment(tp, urgent) // RAWS_PER_STEP
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
             _plan_corner(tp, last)
-        elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY:
+        elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY * _seg(tp, last).length:
             if not tp.corner_known and not urgent:
                 return
             _add_body(tp, last)
@@ -163,7 +163,7 @@ cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
     cdef Segment* a = _seg(tp, last)
     cdef Segment* b = _seg(tp, last + 1)
     cdef Corner corner
-    if tp.body_end >= a.length - NO_WAY and not tp.smooth:
+    if tp.body_end >= a.length * (1.0 - NO_WAY) and not tp.smooth:
         _reopen(tp, last)
         return
     corner = decide_corner(tp, a, b, a.length - fmax(tp.body_end, a.trim_start))
@@ -201,7 +201,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
         return
     _cut_body(tp, last, tp.body_goal)
     _start_segment(tp, last + 1)
-    if tp.body_end < tp.body_goal - NO_WAY:
+    if tp.body_end < tp.body_goal - NO_WAY * b.length:
         _add_body(tp, last + 1)
     refresh(tp)
     if _active_fits(tp):
@@ -214,7 +214,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
     tp.seg_built = last + 1
     span = _span(tp, tp.span_tail - 1)
     tp.body_end = a.trim_start if span.kind == SPAN_BLEND else span.u0 + span.h
-    while tp.body_end < tp.body_goal - NO_WAY:
+    while tp.body_end < tp.body_goal - NO_WAY * a.length:
         _add_body(tp, last)
     refresh(tp)
 
@@ -222,7 +222,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
 cdef void _cut_body(TpState* tp, int64_t last, double end) noexcept nogil:
     """Let the spans of segment `last` end at u = `end`."""
     cdef Span* span = _span(tp, tp.span_tail - 1)
-    while tp.span_tail - 1 > tp.active and span.seg == last and span.kind != SPAN_BLEND and span.u0 >= end - NO_WAY:
+    while tp.span_tail - 1 > tp.active and span.seg == last and span.kind != SPAN_BLEND and span.u0 >= end - NO_WAY * _seg(tp, last).length:
         tp.span_tail -= 1
         span = _span(tp, tp.span_tail - 1)
     if span.seg == last and span.kind != SPAN_BLEND:

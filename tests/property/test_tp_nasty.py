@@ -50,8 +50,7 @@ class Nasty:
             end[1] += self.random.choice([-5.0, 5.0])
         else:
             end[:3] = [self.coordinate() for _ in range(3)]
-        if kind != 0:
-            end[3:5] = self.random.choice([0.0, 0.0, 0.0, 5.0, -20.0], 2)
+        end[3:5] = self.random.choice([0.0, 0.0, 0.0, 5.0, -20.0], 2)
         tolerance = self.random.choice([0.002, 0.02, 0.2])
         feed = self.random.uniform(5, 120)
         options = {"tolerance": tolerance, "vel_max": 2 * feed, "id": len(self.path) + 1}

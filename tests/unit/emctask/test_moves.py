@@ -92,7 +92,7 @@ def test_short_lines_within_the_tolerance_become_one_that_carries_the_last_line_
     canon.set_motion_control_mode(CANON_CONTINUOUS, 0.01)
     canon.set_naivecam_tolerance(0.01)
     for i in range(1, 11):
-        feed(canon, x=i * 0.1, y=0.005 if i % 2 else 0.0, line=i)
+        feed(canon, x=i * 0.1, y=0.00001 if i % 2 else 0.0, line=i)
     canon.flush()
     assert [move[0] for move in canon.lines] == [10]
     assert canon.lines[0][2:4] == (1.0, 0.0)
@@ -107,10 +107,11 @@ def test_joining_and_blending_together_stay_within_the_path_tolerance():
     canon.set_feed_rate(1000.0)
     canon.set_motion_control_mode(CANON_CONTINUOUS, 0.02)
     canon.set_naivecam_tolerance(0.02)
-    for x, y in ((1.0, 0.008), (2.0, 0.0), (3.0, 0.018), (4.0, 0.0)):  # 0.018 is more than half of the tolerance
+    for x, y in ((1.0, 0.00003), (2.0, 0.0), (3.0, 0.0002), (4.0, 0.0)):  # 0.0002 is more than its share of the tolerance
         feed(canon, x=x, y=y)
     canon.flush()
-    assert canon.lines == [(2.0, 0.01), (3.0, 0.02), (4.0, 0.02)]
+    assert [x for x, _ in canon.lines] == [2.0, 3.0, 4.0]
+    assert [tolerance for _, tolerance in canon.lines] == pytest.approx([0.01996, 0.02, 0.02])
 
 
 def test_a_corner_ends_the_joining(canon):
@@ -155,7 +156,7 @@ def test_a_flat_arc_joins_with_lines_when_the_tolerance_allows_it(canon):
     canon.set_motion_control_mode(CANON_CONTINUOUS, 0.01)
     canon.set_naivecam_tolerance(0.01)
     feed(canon, x=10.0)
-    radius = 1000.0
+    radius = 20000.0
     canon.arc_feed(2, 11.0, 1.0 / (2 * radius), 10.0, radius, 1, 0.0, *ORIGIN)
     canon.flush()
     assert canon.arcs == []
