@@ -28,7 +28,8 @@ class Modes(NamedTuple):
         words = [f"G{code // 10}" if code % 10 == 0 else f"G{code / 10:.1f}" for code in codes]
         feed, speed, path, naive = self.settings[1:5]
         if CONTINUOUS in codes:
-            words += [f"P{path:.9g}", f"Q{naive:.9g}"] if path else []
+            words += [f"P{path:.9g}"] if path else []
+            words += [f"Q{naive:.9g}"] if path or naive else []
         if feed and INVERSE_TIME not in codes:
             words.append(f"F{feed:.9g}")
         if speed:
