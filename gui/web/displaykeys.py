@@ -6,6 +6,7 @@ Values come out in machine units; whatever the file leaves out gets the value th
 
 from __future__ import annotations
 
+import base64
 import math
 import re
 from typing import Any
@@ -28,7 +29,11 @@ DEFAULT_INCREMENTS = {
     10.0: "1 mm, .1 mm, .01 mm",
     25.4: ".1 in, .05 in, .01 in, .001 in",
 }
+DEFAULT_GRIDS = "10 mm, 20 mm, 50 mm, 100 mm, 1 in, 2 in, 5 in, 10 in"
 MACHINE_TYPES = ("mill", "lathe", "foam")
+FOAM_PLANES = (0.0, 1.5)  # machine units: where XY and UV are shown
+ICON_TYPES = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".ico": "image/x-icon"}
+LARGEST_ICON = 1 << 16  # bytes
 DEFAULT_EXTENSIONS = (".ngc", ".nc", ".tap")
 NO_LIMIT = 1e99
 
@@ -82,8 +87,9 @@ def configuration(ini: IniFile, settings: Settings) -> dict[str, Any]:
         "filters": filters(ini),
         "upload_limit": settings.upload_limit,
         "confirm_exit": ini.boolean("DISPLAY", "CONFIRM_EXIT", False),
-        "icon": ini.find("DISPLAY", "ICON"),
-        "grids": ini.find("DISPLAY", "GRIDS", ""),
+        "icon": icon(ini),
+        "grids": grids(ini, mm),
+        "geometry": geometry(ini),
         "hal_write": settings.hal_write,
     }
 
@@ -99,6 +105,41 @@ def machine_type(ini: IniFile) -> str:
         if ini.boolean("DISPLAY", word.upper(), False):
             return word
     return "mill"
+
+
+def geometry(ini: IniFile) -> list[dict[str, Any]]:
+    """[DISPLAY]GEOMETRY: how the picture makes points of poses, the steps of each in the order of their execution.
+
+    A foam cutter is shown as the two ends of its wire, in planes a little apart, whatever the entry says.
+    """
+    if machine_type(ini) == "foam":
+        return [
+            {"steps": [[letter, 1] for letter in letters], "height": height}
+            for letters, height in zip(("XY", "UV"), FOAM_PLANES, strict=True)
+        ]
+    text = ini.find("DISPLAY", "GEOMETRY", AXES).upper()
+    if not re.fullmatch(rf"(-?[{AXES}]|!)*", text):
+        raise ini.error("DISPLAY", "GEOMETRY", f"{text}; letters of {AXES}, where need be with -, would be right")
+    known = axis_letters(ini)
+    steps = [[letter, -1 if sign else 1] for sign, letter in re.findall(rf"(-?)([{AXES}])", text) if letter in known]
+    return [{"steps": steps[::-1], "height": 0.0}]
+
+
+def grids(ini: IniFile, mm: float) -> list[dict[str, Any]]:
+    """Distances of grid lines to choose from."""
+    return increments(ini.find("DISPLAY", "GRIDS", DEFAULT_GRIDS), LENGTHS, mm, ini, "GRIDS")[1:]
+
+
+def icon(ini: IniFile) -> str | None:
+    """The picture of [DISPLAY]ICON as a data: address, where it is of a kind that browsers show."""
+    path = ini.path("DISPLAY", "ICON", None)
+    kind = ICON_TYPES.get(path.suffix.lower()) if path is not None else None
+    try:
+        if path is None or kind is None or path.stat().st_size > LARGEST_ICON:
+            return None
+        return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
+    except OSError:
+        return None
 
 
 def axis_letters(ini: IniFile) -> str:

@@ -8,9 +8,12 @@ from typing import Any
 
 import pytest
 
+from gui.web import displaykeys
+from gui.web.wizard import make
+from nml.inifile import IniFile
 from tests.browser.screen import PHONE, TABLET
-from tests.support.machine import ROOT, wait_until
-from tests.support.webclient import WebClient, web_mill
+from tests.support.machine import ROOT, running, wait_until
+from tests.support.webclient import WebClient, web_mill, web_port
 
 PANELS = ["manual", "program", "mdi", "path", "offsets", "tools", "messages", "hal", "scope", "system"]
 SQUARE = "G21 G90 G0 X0 Y0\nG1 X60 F1200\nY60\nX0\nY0\nM2\n"
@@ -254,6 +257,59 @@ def test_a_lathe_shows_diameters_and_its_own_jog_pad(tmp_path: Path, open_screen
         assert z_minus is not None
         assert z_plus is not None
         assert z_minus["y"] == z_plus["y"], "Z lies"
+
+
+def test_a_foam_cutter_is_shown_with_both_ends_of_its_wire(tmp_path: Path, open_screen: Any) -> None:
+    ini, wrong = make.generate({"machine_type": "foam", "axes": "XYUV", "spindles": False}, "foam", tmp_path)
+    assert wrong == []
+    ini.write_text(ini.read_text().replace("DISPLAY = web", "DISPLAY = web --port 0 --no-browser"))
+    with running(ini) as run:
+        screen = open_screen(web_port(run))
+        screen.power_up()
+        rows = screen.page.locator(".readout tr[data-axis]")
+        assert [rows.nth(number).get_attribute("data-axis") for number in range(rows.count())] == list("XYUV")
+        screen.send_mdi("G0 X10 Y5 U20 V6")
+        screen.wait_position("U", 20)
+        screen.go("path")
+        screen.page.wait_for_selector(".canvas canvas")
+        parts = displaykeys.geometry(IniFile(ini))
+        assert screen.page.evaluate(POINTS_OF, [parts, POSE]) == [[1, 2, 0], [7, 8, 1.5]]
+
+
+POSE = [1, 2, 3, 0, 0, 90, 7, 8, 9]
+POINTS_OF = "async ([parts, pose]) => new (await import('/page/path/shape.js')).Shape(parts, 1).pointsOf(pose)"
+
+
+@pytest.mark.parametrize(
+    ("entry", "points"),
+    [
+        ("XYZABCUVW", [[1 - 8, 2 + 7, 3 + 9]]),  # UVW turn with C, XYZ do not
+        ("CXYZ", [[-2, 1, 3]]),
+        ("-CXYZ", [[2, -1, 3]]),
+        ("XYZ-W", [[1, 2, 3 - 9]]),
+    ],
+)
+def test_the_picture_follows_the_geometry_of_the_ini_file(
+    mill: int, open_screen: Any, tmp_path: Path, entry: str, points: list[list[float]]
+) -> None:
+    text = (tmp_path / "mill_mm.ini").read_text().replace("COORDINATES = X Y Z", "COORDINATES = X Y Z A B C U V W")
+    (tmp_path / "all.ini").write_text(text.replace("[DISPLAY]", f"[DISPLAY]\nGEOMETRY = {entry}"))
+    screen = open_screen(mill)
+    found = screen.page.evaluate(POINTS_OF, [displaykeys.geometry(IniFile(tmp_path / "all.ini")), POSE])
+    assert found == [pytest.approx(point) for point in points]
+
+
+def test_the_grid_and_the_icon_of_the_ini_file_are_used(tmp_path: Path, open_screen: Any) -> None:
+    (tmp_path / "shop.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    keys = "RELATIVE\nGRIDS = 5 mm, 1 in\nICON = shop.svg"
+    with web_mill(tmp_path, changes={"DISPLAY.POSITION_OFFSET": keys}) as (_, port):
+        screen = open_screen(port, panel="path")
+        grid = screen.page.get_by_label("Grid", exact=True)
+        assert grid.locator("option").all_inner_texts() == ["No grid", "5 mm", "1 in"]
+        grid.select_option("25.4")
+        icon = screen.page.get_attribute("link[rel=icon]", "href")
+        assert icon is not None
+        assert icon.startswith("data:image/svg+xml;base64,")
 
 
 def test_the_panel_of_the_guide_appears_in_the_rail(mill: int, open_screen: Any) -> None:

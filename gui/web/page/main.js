@@ -56,6 +56,7 @@ link.connect();
 function build(config) {
   built = true;
   document.title = config.title || config.machine || "pyemc";
+  if (config.icon) document.querySelector("link[rel=icon]")?.setAttribute("href", config.icon);
   registerEmbedded(config.embed_tabs ?? []);
   const place = (/** @type {string} */ id) => /** @type {HTMLElement} */ (document.getElementById(id));
   if (config.wizard) document.body.dataset.wizard = "";

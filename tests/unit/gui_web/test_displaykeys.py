@@ -125,3 +125,29 @@ def test_filters_and_extensions_come_from_their_section(ini):
 def test_a_program_folder_that_is_not_there_is_said(ini):
     with pytest.raises(ConfigError, match="no such folder"):
         configuration(ini("PROGRAM_PREFIX = nowhere"))
+
+
+def test_geometry_is_carried_out_from_right_to_left(ini):
+    assert displaykeys.geometry(ini("GEOMETRY = XY-Z")) == [{"steps": [["Z", -1], ["Y", 1], ["X", 1]], "height": 0.0}]
+    assert displaykeys.geometry(ini("GEOMETRY = !CXYB")) == [{"steps": [["Y", 1], ["X", 1]], "height": 0.0}]
+    with pytest.raises(ConfigError, match="GEOMETRY.*XYQ"):
+        displaykeys.geometry(ini("GEOMETRY = XYQ"))
+
+
+def test_a_foam_cutter_is_shown_in_two_planes(ini):
+    parts = displaykeys.geometry(ini("MACHINE_TYPE_HINT = foam\nGEOMETRY = XY;UV", "X Y U V"))
+    assert [("".join(letter for letter, _ in part["steps"]), part["height"]) for part in parts] == [
+        ("XY", 0.0), ("UV", 1.5),
+    ]  # fmt: skip
+
+
+def test_grids_are_given_as_increments_are(ini):
+    assert [grid["value"] for grid in displaykeys.grids(ini("GRIDS = 5 mm, 1/2 in"), 1.0)] == [5.0, 12.7]
+    assert len(displaykeys.grids(ini(), 1.0)) == 8
+
+
+def test_an_icon_that_browsers_show_goes_with_the_page(ini, tmp_path):
+    assert displaykeys.icon(ini("ICON = none.png")) is None
+    (tmp_path / "shop.png").write_bytes(b"\x89PNG")
+    assert displaykeys.icon(ini("ICON = shop.png")) == "data:image/png;base64,iVBORw=="
+    assert displaykeys.icon(ini("ICON = shop.xpm")) is None

@@ -10,6 +10,7 @@ import { recall, remember } from "../core/prefs.js";
 import { length } from "../core/units.js";
 import { css, plainColour } from "../path/colours.js";
 import { ForecastClock, KIND, PathData } from "../path/data.js";
+import { Shape } from "../path/shape.js";
 import { timeline } from "../path/timeline.js";
 
 /** @typedef {import("../core/app.js").App} App */
@@ -35,7 +36,8 @@ registerPanel({
     fill(root, h("div", { class: "card path grow" }, place, legend, notice, hint, line.element));
     const { Scene } = await import("../path/scene.js");
     hint.remove();
-    const scene = new Scene(place, data);
+    const { geometry, units } = app.v.config;
+    const scene = new Scene(place, data, new Shape(geometry, units.degrees_per_unit));
     const bar = toolbar(app, scene, data, () => drawLegend(legend, scene, data));
     root.firstElementChild?.prepend(bar);
     receive(app, scene, data, line, () => drawLegend(legend, scene, data));
@@ -73,7 +75,15 @@ function toolbar(app, scene, data, recoloured) {
   }, { "aria-label": _("Colours") });
   scene.colouring = colouring.value;
   const rapids = h("button", { type: "button", "aria-pressed": "true", onclick: () => { scene.setRapids(!scene.showRapids); setPressed(rapids, scene.showRapids); } }, _("Rapids"));
+  const steps = [[0, _("No grid")], ...config.grids.map((/** @type {any} */ grid) => [grid.value, grid.text])];
+  const chosen = steps.find(([step]) => step === recall("grid", 0))?.[0] ?? 0;
+  const grid = select(steps, chosen, (choice) => {
+    remember("grid", Number(choice));
+    scene.setGrid(Number(choice));
+  }, { "aria-label": _("Grid") });
+  if (lathe) scene.gridAxes = [0, 2];
   view(lathe || "p");
+  scene.setGrid(chosen);
   recoloured();
   app.store.watch(["theme"], () => {
     scene.setTheme();
@@ -86,6 +96,7 @@ function toolbar(app, scene, data, recoloured) {
     iconButton("target", _("Show all"), () => fitAll(app, scene, data), { iconOnly: true }),
     rapids,
     colouring,
+    grid,
     iconButton("trash", _("Clear the trail"), () => scene.clearTrail(), { iconOnly: true }),
     iconButton("reload", _("Compute again"), () => app.act("path.again"), { iconOnly: true }),
   );
@@ -101,7 +112,7 @@ function machineBox(app) {
 function fitAll(app, scene, data) {
   const [low, high] = machineBox(app);
   scene.setLimits(low, high);
-  const box = data.box() ?? (scene.limits.visible ? [low, high] : [[-50, -50, -50], [50, 50, 50]]);
+  const box = data.box(scene.shape) ?? (scene.limits.visible ? [low, high] : [[-50, -50, -50], [50, 50, 50]]);
   scene.fit(box[0], box[1]);
 }
 
@@ -150,8 +161,8 @@ function follow(app, scene, data, line) {
   app.store.watch(["actual_position", "position", "tool_offset", "g5x_offset", "g92_offset"], (v) => {
     const position = v.actual_position ?? v.position;
     if (!position) return;
-    const tip = [0, 1, 2].map((axis) => position[axis] - (v.tool_offset?.[axis] ?? 0));
-    const text = tip.map((value) => value.toFixed(5)).join();
+    const tip = position.map((/** @type {number} */ place, /** @type {number} */ axis) => place - (v.tool_offset?.[axis] ?? 0));
+    const text = tip.map((/** @type {number} */ value) => value.toFixed(5)).join();
     if (text !== was) scene.addTrail(tip);
     was = text;
     scene.setTool(tip, [0, 1, 2].map((axis) => (v.g5x_offset?.[axis] ?? 0) + (v.g92_offset?.[axis] ?? 0)));

@@ -87,17 +87,20 @@ export class PathData {
     }
   }
 
-  /** Least and greatest coordinates of the first three axes. @returns {[number[], number[]] | null} */
-  box() {
+  /** Least and greatest coordinates of the points that are shown. @param {import("./shape.js").Shape} shape @returns {[number[], number[]] | null} */
+  box(shape) {
+    const point = [0, 0, 0];
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
     for (const { end, kind, count } of this.chunks) {
       for (let n = 0; n < count; n += 1) {
         if (kind[n] === KIND.JUMP) continue;
-        for (let axis = 0; axis < 3; axis += 1) {
-          const value = end[n * AXES + axis];
-          if (value < low[axis]) low[axis] = value;
-          if (value > high[axis]) high[axis] = value;
+        for (let part = 0; part < shape.points; part += 1) {
+          shape.place(point, 0, part, end, n * AXES);
+          for (let axis = 0; axis < 3; axis += 1) {
+            if (point[axis] < low[axis]) low[axis] = point[axis];
+            if (point[axis] > high[axis]) high[axis] = point[axis];
+          }
         }
       }
     }

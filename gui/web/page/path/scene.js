@@ -5,12 +5,13 @@
 
 import * as THREE from "../vendor/three/three.module.min.js";
 import { OrbitControls } from "../vendor/three/OrbitControls.js";
-import { AXES, KIND, startOf } from "./data.js";
+import { KIND } from "./data.js";
 import { colourOf } from "./colours.js";
 
 const TRAIL_POINTS = 20_000;
 const FRAME_MS = 33; // between two pictures at most
 const PICK_PIXELS = 8;
+const GRID_LINES = 2000; // a denser grid would be a plane
 const FAR = 1e6;
 
 /** Where the camera stands and what is up, for each view. */
@@ -24,7 +25,8 @@ const VIEWS = /** @type {Record<string, [number[], number[]]>} */ ({
 });
 
 /** @typedef {import("./data.js").Chunk} Chunk */
-/** @typedef {{cut: THREE.LineSegments, rapid: THREE.LineSegments, chunk: Chunk, moves: {cut: Uint32Array, rapid: Uint32Array}}} Piece */
+/** @typedef {{lines: THREE.LineSegments, moves: Uint32Array}} Part lines of a chunk, and the move that each belongs to */
+/** @typedef {{cut: Part, rapid: Part, chunk: Chunk}} Piece */
 
 export class Scene {
   /** @type {Piece[]} */
@@ -32,15 +34,20 @@ export class Scene {
   #frame = 0;
   #lastFrame = 0;
   #trailCount = 0;
+  /** @type {[number[], number[]]} least and greatest corner of what the grid lies under */
+  #floor = [[0, 0, 0], [0, 0, 0]];
+  gridStep = 0;
+  gridAxes = [0, 1];
   visible = true;
   /** Whether the operator turned or moved the picture, so that it is not fitted any more by itself. */
   touched = false;
   /** @type {() => void} called when the picture has another size */
   onresize = () => {};
 
-  /** @param {HTMLElement} place @param {import("./data.js").PathData} data */
-  constructor(place, data) {
+  /** @param {HTMLElement} place @param {import("./data.js").PathData} data @param {import("./shape.js").Shape} shape */
+  constructor(place, data, shape) {
     this.data = data;
+    this.shape = shape;
     this.place = place;
     this.colouring = "kind";
     this.showRapids = true;
@@ -68,24 +75,38 @@ export class Scene {
 
   // ---- things that are always there ----
 
+  /** A cone at the tool; a wire has one at each end. */
   #makeTool() {
     const cone = new THREE.ConeGeometry(0.5, 1.6, 24);
     cone.rotateX(-Math.PI / 2);
     cone.translate(0, 0, 0.8);
-    this.tool = new THREE.Mesh(cone, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.85 }));
+    const material = new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.85 });
+    this.tools = this.#eachPoint(() => new THREE.Mesh(cone, material));
+    this.wire = new THREE.Line(new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]), new THREE.LineBasicMaterial());
+    this.wire.visible = this.tools.length > 1;
+    this.wire.frustumCulled = false;
     this.cursor = new THREE.Mesh(new THREE.SphereGeometry(0.35, 16, 12), new THREE.MeshBasicMaterial());
     this.cursor.visible = false;
     this.origin = axesCross();
-    this.marks.add(this.tool, this.cursor, this.origin);
+    this.marks.add(...this.tools, this.wire, this.cursor, this.origin);
   }
 
   #makeTrail() {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(TRAIL_POINTS * 3), 3));
-    geometry.setDrawRange(0, 0);
-    this.trail = new THREE.Line(geometry, new THREE.LineBasicMaterial());
-    this.trail.frustumCulled = false;
-    this.marks.add(this.trail);
+    const material = new THREE.LineBasicMaterial();
+    this.trails = this.#eachPoint(() => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(TRAIL_POINTS * 3), 3));
+      geometry.setDrawRange(0, 0);
+      const trail = new THREE.Line(geometry, material);
+      trail.frustumCulled = false;
+      return trail;
+    });
+    this.marks.add(...this.trails);
+  }
+
+  /** One of something for each point that a pose is shown as. @template T @param {() => T} make @returns {T[]} */
+  #eachPoint(make) {
+    return Array.from({ length: this.shape.points }, make);
   }
 
   #makeOverlays() {
@@ -102,7 +123,9 @@ export class Scene {
   #makeLimits() {
     this.limits = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ transparent: true, opacity: 0.6 }));
     this.limits.visible = false;
-    this.marks.add(this.limits);
+    this.grid = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ transparent: true, opacity: 0.7 }));
+    this.grid.visible = false;
+    this.marks.add(this.limits, this.grid);
   }
 
   /** Take the colours of the page's theme. */
@@ -111,12 +134,14 @@ export class Scene {
     const colour = (/** @type {string} */ name) => new THREE.Color(style.getPropertyValue(name).trim());
     this.dark = document.documentElement.dataset.theme !== "light";
     const paint = (/** @type {any} */ object, /** @type {string} */ name) => object.material.color.copy(colour(name));
-    paint(this.tool, "--warn");
+    paint(this.tools[0], "--warn");
+    paint(this.wire, "--warn");
     paint(this.cursor, "--focus");
-    paint(this.trail, "--danger");
+    paint(this.trails[0], "--danger");
     paint(this.selected, "--focus");
     paint(this.outside, "--danger");
     paint(this.limits, "--muted");
+    paint(this.grid, "--line");
     this.recolour();
   }
 
@@ -124,9 +149,10 @@ export class Scene {
 
   clear() {
     for (const piece of this.#pieces) {
-      this.lines.remove(piece.cut, piece.rapid);
-      piece.cut.geometry.dispose();
-      piece.rapid.geometry.dispose();
+      for (const { lines } of [piece.cut, piece.rapid]) {
+        this.lines.remove(lines);
+        lines.geometry.dispose();
+      }
     }
     this.#pieces = [];
     this.select(0);
@@ -143,31 +169,38 @@ export class Scene {
       if (chunk.kind[n] === KIND.JUMP) continue;
       (chunk.kind[n] === KIND.RAPID ? rapids : cuts).push(n);
     }
-    const moves = { cut: Uint32Array.from(cuts), rapid: Uint32Array.from(rapids) };
-    const piece = { chunk, moves, cut: this.#segments(chunk, moves.cut, 1), rapid: this.#segments(chunk, moves.rapid, 0.45) };
-    piece.rapid.visible = this.showRapids;
+    const piece = { chunk, cut: this.#segments(chunk, cuts, 1), rapid: this.#segments(chunk, rapids, 0.45) };
+    piece.rapid.lines.visible = this.showRapids;
     this.#pieces.push(piece);
-    this.lines.add(piece.cut, piece.rapid);
+    this.lines.add(piece.cut.lines, piece.rapid.lines);
     this.#paint(piece);
     this.draw();
   }
 
-  /** @param {Chunk} chunk @param {Uint32Array} moves @param {number} opacity */
-  #segments(chunk, moves, opacity) {
+  /** @param {Chunk} chunk @param {number[]} numbers of the moves @param {number} opacity @returns {Part} */
+  #segments(chunk, numbers, opacity) {
+    const counts = numbers.map((n) => this.shape.segments(chunk, n));
+    const moves = new Uint32Array(counts.reduce((sum, count) => sum + count, 0));
     const positions = new Float32Array(moves.length * 6);
-    moves.forEach((n, k) => putSegment(positions, k * 6, chunk, n));
+    let at = 0;
+    numbers.forEach((n, k) => {
+      this.shape.put(positions, at * 6, chunk, n);
+      moves.fill(n, at, at + counts[k]);
+      at += counts[k];
+    });
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(moves.length * 6), 3, true));
-    return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity }));
+    const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity }));
+    return { lines, moves };
   }
 
   /** @param {Piece} piece */
   #paint(piece) {
-    for (const part of /** @type {const} */ (["cut", "rapid"])) {
-      const attribute = piece[part].geometry.getAttribute("color");
+    for (const { lines, moves } of [piece.cut, piece.rapid]) {
+      const attribute = lines.geometry.getAttribute("color");
       const colours = /** @type {Uint8Array} */ (attribute.array);
-      piece.moves[part].forEach((n, k) => {
+      moves.forEach((n, k) => {
         const rgb = colourOf(this.colouring, piece.chunk, n, this.data.feedRange, this.dark);
         for (let at = 0; at < 6; at += 1) colours[k * 6 + at] = rgb[at % 3];
       });
@@ -185,7 +218,7 @@ export class Scene {
   /** @param {boolean} on */
   setRapids(on) {
     this.showRapids = on;
-    for (const piece of this.#pieces) piece.rapid.visible = on;
+    for (const piece of this.#pieces) piece.rapid.lines.visible = on;
     this.draw();
   }
 
@@ -204,7 +237,7 @@ export class Scene {
   #overlay(overlay, wanted) {
     /** @type {number[]} */
     const positions = [];
-    this.data.forLines(wanted, (chunk, n) => putSegment(positions, positions.length, chunk, n));
+    this.data.forLines(wanted, (chunk, n) => this.shape.put(positions, positions.length, chunk, n));
     overlay.geometry.dispose();
     overlay.geometry = new THREE.BufferGeometry();
     overlay.geometry.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
@@ -219,46 +252,64 @@ export class Scene {
     ray.params.Line.threshold = PICK_PIXELS * this.#unitsPerPixel();
     ray.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
     for (const part of /** @type {const} */ (["cut", "rapid"])) {
-      const hits = this.#pieces.filter((piece) => piece[part].visible).flatMap((piece) => ray.intersectObject(piece[part]).map((hit) => ({ hit, piece })));
+      const shown = this.#pieces.filter((piece) => piece[part].lines.visible);
+      const hits = shown.flatMap((piece) => ray.intersectObject(piece[part].lines).map((hit) => ({ hit, piece })));
       hits.sort((a, b) => a.hit.distance - b.hit.distance);
-      if (hits.length) return hits[0].piece.chunk.line[hits[0].piece.moves[part][(hits[0].hit.index ?? 0) >> 1]];
+      if (hits.length) return hits[0].piece.chunk.line[hits[0].piece[part].moves[(hits[0].hit.index ?? 0) >> 1]];
     }
     return 0;
   }
 
   // ---- the machine ----
 
-  /** @param {ArrayLike<number>} tip @param {ArrayLike<number>} origin of the work system */
+  /** @param {ArrayLike<number>} tip nine axes @param {ArrayLike<number>} origin of the work system */
   setTool(tip, origin) {
-    this.tool.position.set(tip[0], tip[1], tip[2]);
+    const points = this.shape.pointsOf(tip);
+    points.forEach((point, k) => this.tools[k].position.set(point[0], point[1], point[2]));
+    this.wire.geometry.setFromPoints([this.tools[0].position, this.tools[points.length - 1].position]);
     this.origin.position.set(origin[0], origin[1], origin[2]);
     this.draw();
   }
 
-  /** @param {ArrayLike<number>} tip */
+  /** @param {ArrayLike<number>} tip nine axes */
   addTrail(tip) {
-    const attribute = this.trail.geometry.getAttribute("position");
-    if (this.#trailCount === TRAIL_POINTS) {
-      attribute.array.copyWithin(0, TRAIL_POINTS / 2 * 3); // the older half goes
-      this.#trailCount = TRAIL_POINTS / 2;
-    }
-    attribute.setXYZ(this.#trailCount, tip[0], tip[1], tip[2]);
+    const full = this.#trailCount === TRAIL_POINTS;
+    if (full) this.#trailCount = TRAIL_POINTS / 2;
+    const points = this.shape.pointsOf(tip);
+    this.trails.forEach((trail, k) => {
+      const attribute = trail.geometry.getAttribute("position");
+      if (full) attribute.array.copyWithin(0, (TRAIL_POINTS / 2) * 3); // the older half goes
+      attribute.setXYZ(this.#trailCount, points[k][0], points[k][1], points[k][2]);
+      attribute.needsUpdate = true;
+      trail.geometry.setDrawRange(0, this.#trailCount + 1);
+    });
     this.#trailCount += 1;
-    attribute.needsUpdate = true;
-    this.trail.geometry.setDrawRange(0, this.#trailCount);
     this.draw();
   }
 
   clearTrail() {
     this.#trailCount = 0;
-    this.trail.geometry.setDrawRange(0, 0);
+    for (const trail of this.trails) trail.geometry.setDrawRange(0, 0);
     this.draw();
   }
 
-  /** Mark a point of the forecast. @param {ArrayLike<number> | null} point */
-  setCursor(point) {
-    this.cursor.visible = point !== null;
-    if (point) this.cursor.position.set(point[0], point[1], point[2]);
+  /** Mark a point of the forecast. @param {ArrayLike<number> | null} pose nine axes */
+  setCursor(pose) {
+    this.cursor.visible = pose !== null;
+    if (pose) {
+      const [x, y, z] = this.shape.pointsOf(pose)[0];
+      this.cursor.position.set(x, y, z);
+    }
+    this.draw();
+  }
+
+  /** Lines of a grid on the floor of the limits, of a lathe on its plane. @param {number} step between two of them, machine units; 0: none */
+  setGrid(step) {
+    this.grid.geometry.dispose();
+    this.grid.geometry = new THREE.BufferGeometry();
+    this.grid.geometry.setAttribute("position", new THREE.Float32BufferAttribute(gridLines(this.#floor, this.gridAxes, step), 3));
+    this.grid.visible = step > 0;
+    this.gridStep = step;
     this.draw();
   }
 
@@ -267,6 +318,11 @@ export class Scene {
     this.limits.visible = [...low, ...high].every((value) => Number.isFinite(value) && Math.abs(value) < FAR);
     this.limits.scale.set(...size(low, high));
     this.limits.position.set(...middle(low, high));
+    const floor = this.limits.visible ? [low, high] : (this.data.box(this.shape) ?? this.#floor);
+    if (floor.flat().join() !== this.#floor.flat().join()) {
+      this.#floor = floor;
+      this.setGrid(this.gridStep);
+    }
     this.draw();
   }
 
@@ -342,19 +398,32 @@ export class Scene {
     this.#frame = 0;
     this.#lastFrame = performance.now();
     const mark = this.#unitsPerPixel() * 16; // marks keep their size on the screen
-    for (const object of [this.tool, this.cursor]) object.scale.setScalar(mark);
+    for (const object of [...this.tools, this.cursor]) object.scale.setScalar(mark);
     this.origin.scale.setScalar(mark * 2.5);
     this.renderer.render(this.scene, this.camera);
   }
 }
 
-/** Write start and end of a move. @param {number[] | Float32Array} positions @param {number} at @param {Chunk} chunk @param {number} n */
-function putSegment(positions, at, chunk, n) {
-  const start = startOf(chunk, n);
-  for (let axis = 0; axis < 3; axis += 1) {
-    positions[at + axis] = start[axis];
-    positions[at + 3 + axis] = chunk.end[n * AXES + axis];
+/**
+ * Ends of lines along two axes at multiples of a step; where the third is least.
+ * @param {[number[], number[]]} floor @param {number[]} axes @param {number} step
+ */
+function gridLines([low, high], axes, step) {
+  /** @type {number[]} */
+  const ends = [];
+  if (!(step > 0)) return ends;
+  for (const [along, across] of [axes, [...axes].reverse()]) {
+    if ((high[across] - low[across]) / step > GRID_LINES) return [];
+    for (let at = Math.ceil(low[across] / step) * step; at <= high[across]; at += step) {
+      for (const side of [low, high]) {
+        const end = [...low];
+        end[along] = side[along];
+        end[across] = at;
+        ends.push(...end);
+      }
+    }
   }
+  return ends;
 }
 
 /** @param {number[]} low @param {number[]} high @returns {[number, number, number]} */
