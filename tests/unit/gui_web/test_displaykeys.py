@@ -130,7 +130,7 @@ def test_a_program_folder_that_is_not_there_is_said(ini):
 def test_geometry_is_carried_out_from_right_to_left(ini):
     assert displaykeys.geometry(ini("GEOMETRY = XY-Z")) == [{"steps": [["Z", -1], ["Y", 1], ["X", 1]], "height": 0.0}]
     assert displaykeys.geometry(ini("GEOMETRY = !CXYB")) == [{"steps": [["Y", 1], ["X", 1]], "height": 0.0}]
-    with pytest.raises(ConfigError, match="GEOMETRY.*XYQ"):
+    with pytest.raises(ConfigError, match=r"GEOMETRY.*XYQ"):
         displaykeys.geometry(ini("GEOMETRY = XYQ"))
 
 
