@@ -26,7 +26,8 @@ from rich.console import Console
 from rich.table import Table
 from tp_corpus import AMAX, CORPUS, DT, VMAX, Job, bound
 
-from emcmot.forecast import Machine, forecast
+from emcmot.forecast import forecast
+from emcmot.forecast_machine import Machine
 from emcmot.tp.verifier import Arc, Line, verify
 from nml.inifile import IniFile
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,63 +20,13 @@ from numpy.typing import NDArray
 
 from emcmot.forecast_canon import ForecastCanon
 from emcmot.forecast_error import path_error
+from emcmot.forecast_machine import AXES, Machine
 from nml.errors import ConfigError, InterpError
 from nml.inifile import IniFile
 from rs274ngc import tooltable
 from rs274ngc.interp import INTERP_ENDFILE, INTERP_EXECUTE_FINISH, INTERP_EXIT, Interpreter
 
-AXES = "XYZABCUVW"
-UNLIMITED = 1e9
-MM = {"mm": 1.0, "metric": 1.0, "inch": 1 / 25.4, "in": 1 / 25.4, "imperial": 1 / 25.4, "1": 1.0, "1.0": 1.0}
-DEGREE = {"degree": 1.0, "deg": 1.0, "grad": 10 / 9, "gon": 10 / 9, "radian": math.pi / 180, "rad": math.pi / 180}
 SHOWN_LINES = 10
-
-
-@dataclass(frozen=True)
-class Machine:
-    """What the forecast must know of a machine; nine axes X to W, lu or deg, and seconds."""
-
-    velocities: tuple[float, ...]
-    accelerations: tuple[float, ...]
-    jerks: tuple[float, ...]  # 0: no limit
-    start: tuple[float, ...]
-    axis_mask: int
-    period: float
-    max_linear_velocity: float
-    length_units: float
-    angle_units: float
-
-    @classmethod
-    def from_ini(cls, ini: IniFile) -> Machine:
-        """The machine of an INI file, at its home position."""
-        letters = [letter for letter in (ini.find("TRAJ", "COORDINATES") or "").upper() if letter in AXES]
-        if not letters:
-            raise ini.error("TRAJ", "COORDINATES", "missing; the letters of the axes are needed, like X Y Z")
-        velocities, accelerations, jerks, start = [UNLIMITED] * 9, [UNLIMITED] * 9, [0.0] * 9, [0.0] * 9
-        limits_jerk = ini.integer("TRAJ", "PLANNER_TYPE", 0) == 1
-        path_jerk = ini.real("TRAJ", "MAX_LINEAR_JERK", 0.0, minimum=0.0)
-        for joint, letter in enumerate(letters):
-            axis, section = AXES.index(letter), f"AXIS_{letter}"
-            linear = "LINEAR" if axis < 3 or axis > 5 else "ANGULAR"
-            top_v = ini.real("TRAJ", f"MAX_{linear}_VELOCITY", UNLIMITED)
-            top_a = ini.real("TRAJ", f"MAX_{linear}_ACCELERATION", UNLIMITED)
-            velocities[axis] = ini.real(section, "MAX_VELOCITY", min(top_v, UNLIMITED))
-            accelerations[axis] = ini.real(section, "MAX_ACCELERATION", min(top_a, UNLIMITED))
-            if limits_jerk:
-                given = [ini.real(part, "MAX_JERK", 0.0, minimum=0.0) for part in (section, f"JOINT_{joint}")]
-                jerks[axis] = min((jerk for jerk in (jerks[axis], path_jerk, *given) if jerk > 0.0), default=0.0)
-            start[axis] = ini.real(f"JOINT_{joint}", "HOME", 0.0)
-        return cls(
-            velocities=tuple(velocities),
-            accelerations=tuple(accelerations),
-            jerks=tuple(jerks),
-            start=tuple(start),
-            axis_mask=sum(1 << AXES.index(letter) for letter in set(letters)),
-            period=ini.real("EMCMOT", "SERVO_PERIOD", 1e6, minimum=1e3) * 1e-9,
-            max_linear_velocity=ini.real("TRAJ", "MAX_LINEAR_VELOCITY", 0.0, minimum=0.0),
-            length_units=ini.choice("TRAJ", "LINEAR_UNITS", MM, 1.0),
-            angle_units=ini.choice("TRAJ", "ANGULAR_UNITS", DEGREE, 1.0),
-        )
 
 
 @dataclass(frozen=True)
@@ -101,7 +50,8 @@ class Forecast:
     line_seconds: dict[int, float]
     line_lost: dict[int, float]
     line_reason: dict[int, str]  # what cost a line most
-    path_error: float | None  # lu: largest distance from the program's path, where a trace was asked for
+    path_error: float | None  # lu: largest distance from the program's path, where a trace was asked for and bounds it
+    unbounded: int  # moves in G64 without P, which may leave their path as far as their speed asks for
     reasons: list[tuple[str, float]]
     moves: int
     positions: NDArray[np.float64]  # of every servo period, where a trace was asked for
@@ -162,6 +112,7 @@ def summarise(canon: ForecastCanon, machine: Machine) -> Forecast:
         line_lost=by_line(lines, lost),
         line_reason=reasons_of_lines(lines, lost, canon.move_reasons(), names),
         path_error=path_error(canon.moves(), machine.start, positions, ids) if len(positions) else None,
+        unbounded=canon.unbounded,
         reasons=[(name, seconds) for name, seconds in reasons if seconds >= 0.001],
         moves=len(lines) - 1,
         positions=positions,
@@ -220,9 +171,15 @@ def report(result: Forecast) -> str:
             f"  line {line:>7}  {seconds:8.3f} s of {result.line_seconds[line]:.3f} s  {result.line_reason[line]}"
             for line, seconds in list(result.line_lost.items())[:SHOWN_LINES]
         ]
-    if result.path_error is not None:
-        out += ["", f"largest distance from the program's path: {result.path_error:.6f}"]
+    if len(result.positions):
+        out += ["", f"largest distance from the program's path: {path_error_text(result)}"]
     return "\n".join(out)
+
+
+def path_error_text(result: Forecast) -> str:
+    """The worst path error, and what it does not say."""
+    known = "n/a" if result.path_error is None else f"{result.path_error:.6f}"
+    return f"{known} ({result.unbounded} moves in G64 without P, which sets no bound)" if result.unbounded else known
 
 
 def as_json(result: Forecast, points: int) -> str:
@@ -242,6 +199,7 @@ def as_json(result: Forecast, points: int) -> str:
                 for line, lost in list(result.line_lost.items())[:SHOWN_LINES]
             ],
             "path_error": result.path_error,
+            "unbounded_moves": result.unbounded,
         }
     )
 

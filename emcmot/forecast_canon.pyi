@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from emcmot.forecast import Machine
+from emcmot.forecast_machine import Machine
 from rs274ngc.moves import MoveCanon
 
-Shape = tuple[tuple[float, ...], tuple[tuple[float, ...], tuple[float, ...], int] | None]
+Shape = tuple[tuple[float, ...], tuple[tuple[float, ...], tuple[float, ...], int] | None, bool]
 
 class ForecastCanon(MoveCanon):
     period: float
@@ -18,6 +18,7 @@ class ForecastCanon(MoveCanon):
     move_section: list[int]
     sections: list[tuple[int, str]]
     pauses: list[float]
+    unbounded: int
     def __init__(
         self, machine: Machine, tools: Sequence[Any] = (), tool_change_s: float = 0.0, trace: bool = False
     ) -> None: ...

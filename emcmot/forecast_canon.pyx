@@ -11,6 +11,7 @@ from libc.math cimport INFINITY, fabs, fmax, fmin
 from libc.stdint cimport int8_t, int64_t
 from libc.string cimport memset
 
+from emcmot.kins.kinematics cimport KINS_JOINTS, KinematicsModule
 from emcmot.tp.tp cimport *
 from rs274ngc.moves cimport MoveCanon
 
@@ -68,6 +69,8 @@ cdef class ForecastCanon(MoveCanon):
     cdef int direction
     cdef list tools
     cdef str operation
+    cdef KinematicsModule kinematics # lives as long as the planner that asks it
+    cdef readonly int unbounded      # moves without a tolerance
 
     def __cinit__(self, *arguments, **options):
         self.tp = tp_create(4096)
@@ -78,7 +81,7 @@ cdef class ForecastCanon(MoveCanon):
         tp_free(self.tp)
 
     def __init__(self, machine, tools=(), tool_change_s=0.0, trace=False):
-        """``machine``: an ``emcmot.forecast.Machine``; ``tools``: the tool table; ``trace``: keep every position."""
+        """``machine``: an ``emcmot.forecast_machine.Machine``; ``tools``: the tool table; ``trace``: keep every position."""
         super().__init__(machine.length_units, machine.angle_units)
         self.set_limits(machine.velocities, machine.accelerations, machine.axis_mask)
         self.period = machine.period
@@ -91,8 +94,10 @@ cdef class ForecastCanon(MoveCanon):
             self.vmax[axis] = machine.velocities[axis]
             self.amax[axis] = machine.accelerations[axis]
             self.jmax[axis] = machine.jerks[axis] if machine.jerks[axis] > 0.0 else INFINITY
+        self.limit_joints(machine.kinematics, machine.joints)
+        for axis in range(AXIS_COUNT):
             tp_set_axis_limits(self.tp, axis, self.vmax[axis], self.amax[axis], machine.jerks[axis])
-        tp_set_planner_type(self.tp, any(machine.jerks))
+        tp_set_planner_type(self.tp, any(machine.jerks) or any(joint.jerk for joint in machine.joints))
         tp_set_vel_limit(self.tp, machine.max_linear_velocity)
         self.move_time = np.zeros(4096)
         self.move_lost = np.zeros(4096)
@@ -103,6 +108,27 @@ cdef class ForecastCanon(MoveCanon):
         self.new_section()
         self.new_chunk()
         self.place(machine.start)
+
+    cdef limit_joints(self, KinematicsModule kinematics, joints):
+        """Limits of joints, as motion tells the planner: those that are one axis lower its limits, others have rows of their own."""
+        cdef double vel[KINS_JOINTS]
+        cdef double acc[KINS_JOINTS]
+        cdef double jerk[KINS_JOINTS]
+        cdef int n, axis, all_axes = 1
+        self.kinematics = kinematics
+        if kinematics is None:
+            return
+        for n in range(kinematics.kins.joints):
+            vel[n], acc[n], jerk[n] = joints[n].velocity, joints[n].acceleration, joints[n].jerk
+            axis = kinematics.kins.axis_of_joint[n]
+            if axis < 0:
+                all_axes = 0
+                continue
+            self.vmax[axis] = fmin(self.vmax[axis], vel[n] if vel[n] > 0.0 else INFINITY)
+            self.amax[axis] = fmin(self.amax[axis], acc[n] if acc[n] > 0.0 else INFINITY)
+        if not all_axes:
+            tp_set_joints(
+                self.tp, <TpInverse>kinematics.kins.inverse, &kinematics.kins, kinematics.kins.joints, vel, acc, jerk)
 
     def place(self, point):
         """The machine stands at this point."""
@@ -148,7 +174,8 @@ cdef class ForecastCanon(MoveCanon):
         return np.asarray(self.move_reason)[: len(self.move_line)]
 
     def moves(self):
-        """Shapes of the moves from the first one on, where a trace is kept: end, and center, normal and turns of arcs."""
+        """Shapes of the moves from the first one on, where a trace is kept: end, center, normal and turns of arcs, and
+        whether a tolerance bounds the path."""
         return self.shapes
 
     def reasons(self):
@@ -243,10 +270,12 @@ cdef class ForecastCanon(MoveCanon):
         if result == TP_OK:
             self.move_line.append(line)
             self.move_section.append(self.section)
+            bounded = seg.term != TP_TERM_BLEND or seg.tolerance > 0.0
+            self.unbounded += not bounded
             if self.keep_trace:
                 end = tuple([seg.end[i] for i in range(AXIS_COUNT)])
                 arc = (tuple(seg.center), tuple(seg.normal), seg.turn) if seg.kind == TP_ARC else None
-                self.shapes.append((end, arc))
+                self.shapes.append((end, arc, bounded))
 
     cdef void begin(self, TpSegment* seg, double x, double y, double z, double a, double b, double c, double u, double v, double w, double vel, double ini_maxvel, double acc) noexcept:
         memset(seg, 0, sizeof(TpSegment))

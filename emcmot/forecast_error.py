@@ -1,8 +1,8 @@
 """How far commanded positions are from the moves of their program: the forecast's worst path error.
 
 Geometry only, apart from the planner: every position is measured against the moves about the one that it was reported
-with. Distances are in xyz, plus the rotary and uvw axes, a degree counting as one length unit. Used by
-``emcmot.forecast``.
+with. Moves without a tolerance (G64 without P), and blends with them, have no error to speak of and are left out.
+Distances are in xyz, plus the rotary and uvw axes, a degree counting as one length unit. Used by ``emcmot.forecast``.
 """
 
 from __future__ import annotations
@@ -15,19 +15,28 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Arc = tuple[tuple[float, ...], tuple[float, ...], int]  # center, normal, turns
-Shape = tuple[tuple[float, ...], Arc | None]  # end, and what makes it an arc
+Shape = tuple[tuple[float, ...], Arc | None, bool]  # end, what makes it an arc, and whether its path is bounded
 
 NEIGHBOURS = 12  # moves before and after the reported one: blends and merged moves reach across some
 SHORTEST = 1e-30
 
 
-def path_error(moves: Sequence[Shape], start: Sequence[float], positions: Array, ids: NDArray[np.int64]) -> float:
-    """Largest distance of the positions from the path of the moves; `ids` names the move of each, from 1, 0: none."""
+def path_error(
+    moves: Sequence[Shape], start: Sequence[float], positions: Array, ids: NDArray[np.int64]
+) -> float | None:
+    """Largest distance of the positions from the path of the moves; `ids` names the move of each, from 1, 0: none.
+
+    None where no move has a bounded path.
+    """
     if not moves or not np.any(ids):
         return 0.0
     ends = np.array([start, *(move[0] for move in moves)], dtype=float)
-    arcs = {k: shape for k, (_, shape) in enumerate(moves) if shape is not None}
-    moving = ids > 0
+    arcs = {k: shape for k, (_, shape, _) in enumerate(moves) if shape is not None}
+    bounded = np.array([move[2] for move in moves])
+    bounded[1:] &= bounded[:-1].copy()  # the blend with the move before is half its own
+    moving = (ids > 0) & bounded[np.maximum(ids - 1, 0)]
+    if not np.any(moving):
+        return None
     points, reported = positions[moving], ids[moving] - 1
     best = np.full(len(points), math.inf)
     for offset in range(-NEIGHBOURS, NEIGHBOURS + 1):

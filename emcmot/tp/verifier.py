@@ -114,8 +114,8 @@ def differences(positions: Array, start: Array, dt: float) -> tuple[Array, Array
 def path_deviation(positions: Array, path: list[Line | Arc], tolerance: float) -> float:
     """Largest distance of the positions, in their order, from the path.
 
-    Paths cross themselves, so a position is looked for near where the one before was found, ahead and (a path may be run
-    back) behind, and only if it is nowhere near there in all the rest of the path.
+    Paths cross themselves, so a position is looked for near where the one before was found, ahead and behind (a path
+    may be run back), and only if it is nowhere near there in all the rest of the path.
     """
     worst, at = 0.0, 0
     for q in positions:

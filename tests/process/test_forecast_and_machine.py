@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from emcmot.forecast import Machine, forecast
+from emcmot.forecast import forecast
+from emcmot.forecast_machine import Machine
 from nml.inifile import IniFile
 from rs274ngc import tooltable
 from tests.support.machine import PROGRAMS, Run, copy_mill, traces

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from emcmot.forecast import Machine, forecast, main, traces
-from nml.errors import InterpError
+from emcmot.forecast import forecast, main, report, traces
+from emcmot.forecast_machine import Machine
+from nml.errors import ConfigError, InterpError
 from nml.inifile import IniFile
 
 INI = """
@@ -98,6 +99,64 @@ def test_without_a_tolerance_to_use_the_path_is_kept_exactly(run):
     assert result.path_error < 1e-9
 
 
+def test_moves_without_a_tolerance_have_no_path_error(run):
+    text = "G21 G90 F3000\nG64\nG1 X20\nG1 Y20\nG61.1\nG1 X0\nG1 Y0\nG64\nG1 X20\nM2\n"
+    result = run(text, trace=True)
+    assert result.unbounded == 3
+    assert result.path_error < 1e-9  # of the moves in G61.1
+    assert "3 moves in G64 without P" in report(result)
+    nothing = run("G21 G90 F3000\nG64\nG1 X20\nG1 Y20\nM2\n", trace=True)
+    assert nothing.path_error is None
+    assert "n/a (2 moves" in report(nothing)
+
+
+def test_joints_that_are_one_axis_lower_its_limits(run, monkeypatch):
+    usual = run("G21 G90\nG0 X80\nM2\n")
+    monkeypatch.setitem(globals(), "INI", INI + "[JOINT_0]\nMAX_VELOCITY = 20\nMAX_ACCELERATION = 100\n")
+    assert usual.seconds < 1.3
+    assert run("G21 G90\nG0 X80\nM2\n").seconds == pytest.approx(80 / 20 + 20 / 100, abs=0.003)
+
+
+COREXY = """
+[KINS]
+KINEMATICS = corexykins
+JOINTS = 3
+[JOINT_0]
+MAX_VELOCITY = 40
+MAX_ACCELERATION = 250
+[JOINT_1]
+MAX_VELOCITY = 40
+MAX_ACCELERATION = 250
+"""
+
+
+def test_joints_of_other_kinematics_hold_their_limits(run, monkeypatch):
+    monkeypatch.setitem(globals(), "INI", INI + COREXY)
+    result = run("G21 G90\nG0 X80 Y80\nG0 X80 Y160\nM2\n", trace=True)
+    motors = result.positions[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])  # x + y and x - y
+    speed = np.abs(np.diff(motors, axis=0)).max(axis=0) / result.period
+    assert speed == pytest.approx([40.0, 40.0], abs=1e-3)
+    assert np.abs(np.diff(motors, 2, axis=0)).max() / result.period**2 <= 250 * 1.0001
+    assert result.seconds == pytest.approx(160 / 40 + 80 / 40, abs=0.5)
+
+
+def test_the_hal_files_say_how_the_kinematics_is_built(tmp_path):
+    (tmp_path / "machine.hal").write_text("loadrt x\nsetp scarakins.D2 [ARM]LENGTH\nsetp scarakins.D4 150.5\n")
+    ini = "[HAL]\nHALFILE = machine.hal\n[ARM]\nLENGTH = 321\n[KINS]\nKINEMATICS = scarakins\nJOINTS = 4\n"
+    (tmp_path / "machine.ini").write_text(ini + "[TRAJ]\nCOORDINATES = X Y Z C\n[JOINT_1]\nHOME = 90\n")
+    machine = Machine.from_ini(IniFile(tmp_path / "machine.ini"))
+    values = machine.kinematics.parameter_values()
+    assert (values["D2"], values["D4"]) == (321.0, 150.5)
+    assert machine.start[1] == pytest.approx(150.5 + values["D6"], abs=1e-9)
+    assert len(machine.joints) == 4
+
+
+def test_an_unknown_kinematics_is_named(tmp_path):
+    (tmp_path / "machine.ini").write_text("[TRAJ]\nCOORDINATES = X Y\n[KINS]\nKINEMATICS = nokins\n")
+    with pytest.raises(ConfigError, match="nokins"):
+        Machine.from_ini(IniFile(tmp_path / "machine.ini"))
+
+
 def test_a_machine_with_jerk_limits_takes_longer(run, monkeypatch):
     text = "G21 G90 G64 P0.05 F3000\nG1 X20\nG1 Y20\nM2\n"
     usual = run(text)
@@ -131,7 +190,7 @@ def test_a_wrong_program_is_an_error_with_its_line(run):
 
 def test_the_command_prints_the_time_and_writes_the_traces(tmp_path, capsys):
     (tmp_path / "machine.ini").write_text(INI)
-    (tmp_path / "job.ngc").write_text("G21 G90\nG1 X10 F600\nM2\n")
+    (tmp_path / "job.ngc").write_text("G21 G90 G61\nG1 X10 F600\nM2\n")
     assert main([str(tmp_path / "machine.ini"), str(tmp_path / "job.ngc"), "--trace", str(tmp_path / "out.npz")]) == 0
     assert "time 0:00:01.0" in capsys.readouterr().out
     assert np.load(tmp_path / "out.npz")["position"].shape[1] == 9
