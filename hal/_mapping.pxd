@@ -43,6 +43,8 @@ cdef struct hal_item:  # a pin or a parameter; its word has the same index
     uint8_t dir
     uint8_t has_safe
     char alias[NAME_SIZE]
+    int64_t pointer  # of a C component's pin: where in the segment its pointer to the cell in use lies; 0 for others
+    uint64_t base  # where the owner's process has the segment
 
 cdef struct hal_signal:
     hal_record head
@@ -112,6 +114,7 @@ cdef extern from *:
     void store_state "store_release"(int32_t* where, int32_t value) nogil
     int32_t load_state "load_acquire"(int32_t* where) nogil
     void store_link "store_release"(int64_t* where, int64_t value) nogil
+    void store_pointer "store_release"(uint64_t* where, uint64_t value) nogil
     void store_magic "store_release"(uint64_t* where, uint64_t value) nogil
     uint64_t load_magic "load_acquire"(uint64_t* where) nogil
     int64_t load_time "load_acquire"(int64_t* where) nogil
@@ -167,6 +170,8 @@ cdef inline void point(hal_segment* at, hal_item* item, int signal) noexcept nog
     cdef hal_word* word = word_of(at, item)
     cdef char* cell = <char*>&word.cell if signal == 0 else <char*>&at.cells[signal - 1]
     store_link(&word.link, cell - <char*>&word.link)
+    if item.pointer:
+        store_pointer(<uint64_t*>(<char*>at + item.pointer), item.base + <uint64_t>(cell - <char*>at))
 
 
 cdef class Mapping:

@@ -29,10 +29,6 @@ cdef class Item(Record):
     cdef hal_cell* cell(self) noexcept
 
 
-cdef class Port(Item):
-    cdef hal_port* port(self) except? NULL
-
-
 cdef class Signal(Record):
     cdef hal_signal* signal
     cdef hal_cell* cell
@@ -50,5 +46,6 @@ cdef class Thread(Record):
     cdef hal_thread* thread
 
 
+cdef hal_port* port_at(hal_cell* cell) noexcept
 cdef object cell_value(hal_cell* cell, int type)
 cdef int set_cell(hal_cell* cell, int type, object value) except -1

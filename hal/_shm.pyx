@@ -11,9 +11,7 @@ from hal._mapping cimport (
     ARGS_SIZE, MAX_CALLS, MAX_COMPS, MAX_FUNCTS, MAX_PARAMS, MAX_PINS, MAX_SIGNALS, MAX_THREADS, NAME_SIZE, load_state,
     announce, point, store_link, store_state, word_of,
 )
-from hal.port cimport (
-    hal_port, port_clear, port_commit, port_peek, port_readable, port_write, port_writable,
-)
+from hal.port cimport hal_port
 
 from nml.errors import HalError
 
@@ -386,6 +384,16 @@ cdef class Item(Record):
         self.item.signal = <int>(signal.signal - self.segment.at.signals) + 1
         point(self.segment.at, self.item, self.item.signal)
 
+    def show_to(self, size_t variable) -> None:
+        """Keep the pointer that lies at this address, in the segment, aimed at the cell in use: a C component's pin."""
+        self.item.base = <size_t>self.segment.at
+        self.item.pointer = variable - self.item.base
+        point(self.segment.at, self.item, self.item.signal)
+
+    def lie_at(self, size_t variable) -> None:
+        """Let the value be at this address, in the segment: a C component's parameter."""
+        store_link(&self.word.link, <int64_t>variable - <int64_t><size_t>&self.word.link)
+
     def unlink(self) -> None:
         """Cut the pin off; it keeps the signal's last value."""
         if self.item.signal:
@@ -395,60 +403,6 @@ cdef class Item(Record):
                 self.word.cell = self.cell()[0]
             point(self.segment.at, self.item, 0)
             self.item.signal = 0
-
-
-cdef class Port(Item):
-    """A pin as one end of a stream of bytes, where its type is port; HalError for another."""
-
-    cdef hal_port* port(self) except? NULL:
-        if self.item.type != PORT:
-            raise HalError(f"'{self.head.name.decode()}' is no port")
-        return port_at(self.cell())
-
-    def readable(self) -> int:
-        """Bytes that wait to be read."""
-        return port_readable(self.port())
-
-    def writable(self) -> int:
-        """Bytes for which there is room."""
-        return port_writable(self.port())
-
-    def size(self) -> int:
-        """Bytes of the buffer; 0 without one."""
-        cdef hal_port* port = self.port()
-        return 0 if port == NULL else port.size
-
-    def peek(self, uint32_t count):
-        """The next bytes, which stay where they are; False where there are not as many."""
-        if port_readable(self.port()) < count:
-            return False
-        cdef bytearray into = bytearray(count)
-        port_peek(self.port(), <char*>into, count)
-        return bytes(into)
-
-    def peek_commit(self, uint32_t count) -> bool:
-        """Drop the next bytes; False where there are not as many."""
-        done = bool(port_commit(self.port(), count))
-        announce(self.segment.at)
-        return done
-
-    def read(self, uint32_t count):
-        """The next bytes; False where there are not as many."""
-        found = self.peek(count)
-        if found is not False:
-            self.peek_commit(count)
-        return found
-
-    def write(self, data) -> bool:
-        """Append bytes, or text as UTF-8; False, and nothing is written, where there is no room for all."""
-        cdef bytes raw = data.encode() if isinstance(data, str) else bytes(data)
-        done = bool(port_write(self.port(), raw, <uint32_t>len(raw)))
-        announce(self.segment.at)
-        return done
-
-    def clear(self) -> None:
-        """Drop all that waits; for the reader."""
-        port_clear(self.port())
 
 
 cdef class Signal(Record):

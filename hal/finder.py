@@ -17,6 +17,8 @@ from typing import Any
 from nml.errors import HalError
 
 GROUP = "pyemc.realtime"
+MODULES_VARIABLE = "PYEMC_MODULES"  # a folder of components in C, instead of the one in which they are installed
+NATIVE_MARK = b"hal_host_table"  # what every component in C has (hal/include), and no Python module
 _CHECKOUT = Path(__file__).resolve().parent.parent
 
 
@@ -43,9 +45,30 @@ def realtime_modules() -> dict[str, str]:
     return {**_entry_points(GROUP), **_project().get("entry-points", {}).get(GROUP, {})}
 
 
+def is_file(name: str) -> bool:
+    """Does ``loadrt name`` mean a file of Python source, or of an extension module that was built from it?"""
+    return name.endswith((".py", ".so"))
+
+
+def name_of(name: str) -> str:
+    """The name of the module that ``loadrt name`` means: that of a file without its endings."""
+    return Path(name).name.partition(".")[0] if is_file(name) else name
+
+
+def modules_folder() -> Path:
+    """Where ``halcompile --install`` puts realtime components in C."""
+    return Path(os.environ.get(MODULES_VARIABLE) or Path(sys.prefix, "lib", "pyemc", "modules"))
+
+
+def native_library(name: str) -> Path | None:
+    """The shared library of a component in C: a file that is named, or an installed one."""
+    path = Path(name) if is_file(name) else modules_folder() / f"{name}.so"
+    return path if path.suffix == ".so" and path.is_file() and NATIVE_MARK in path.read_bytes() else None
+
+
 def realtime_module(name: str) -> ModuleType:
-    """The Python module that ``loadrt name`` loads, from the tables or a ``.py`` file; HalError for none."""
-    if name.endswith(".py"):
+    """The Python module that ``loadrt name`` loads, from the tables or a file; HalError for none."""
+    if is_file(name):
         return _module_from_file(Path(name))
     target = _project().get("entry-points", {}).get(GROUP, {}).get(name) or _entry_points(GROUP).get(name)
     if target is None:
@@ -62,7 +85,7 @@ def realtime_module(name: str) -> ModuleType:
 def _module_from_file(path: Path) -> ModuleType:
     from importlib.util import module_from_spec, spec_from_file_location
 
-    spec = spec_from_file_location(path.stem, path)
+    spec = spec_from_file_location(name_of(path.name), path)
     if not path.is_file() or spec is None or spec.loader is None:
         raise HalError(f"there is no component file '{path}'", -2)
     module = module_from_spec(spec)

@@ -22,7 +22,8 @@ from typing import Any
 
 from hal import _shm
 from hal._items import Items
-from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item, Port
+from hal._ports import Port
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
 from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
 from hal.stream import Stream
 from hal.values import TYPE_NAMES

@@ -15,6 +15,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from hal import _shm
@@ -22,11 +23,12 @@ from hal._shm import BIT, IN, IO, OUT, PORT, REALTIME, RO, RW, S32, THREAD_COMP,
 from hal._threads import NativeThread, PythonCall, Scheduler, lock_memory
 from hal.components import find as find_component
 from hal.core import LOCK_CONFIG, LOCK_LOAD, Hal
-from hal.finder import realtime_module
+from hal.finder import name_of, native_library, realtime_module
 from nml import clock
 from nml.errors import HalError
 
 REALTIME_VARIABLE = "PYEMC_REALTIME"  # 0: ordinary threads even where realtime priority is allowed
+LATENCY_FILE = "/dev/cpu_dma_latency"
 TOP_PRIORITY = 90  # of the fastest thread; slower ones follow below
 HAL_BIT, HAL_FLOAT, HAL_S32, HAL_U32 = _shm.BIT, _shm.FLOAT, _shm.S32, _shm.U32
 HAL_S64, HAL_U64, HAL_PORT = _shm.S64, _shm.U64, _shm.PORT
@@ -106,6 +108,7 @@ class Host:
         self._calls: dict[str, tuple[int, int, int, int, int]] = {}
         self._loading: list[Component] | None = None
         self._never_freed: list[Any] = []
+        self._awake: int | None = None
         self._simulated: Scheduler | None = None
         self._realtime = self._try_realtime()
 
@@ -130,6 +133,8 @@ class Host:
             refused.append("locked memory")
         if refused:
             self.notes.append(f"Note: the system does not allow {' and '.join(refused)}; timing depends on its load")
+        if not refused:
+            self._awake = stay_awake()
         return "realtime priority (SCHED_FIFO)" not in refused
 
     def _scheduler(self) -> tuple[Scheduler, int]:
@@ -155,12 +160,12 @@ class Host:
 
     def load(self, name: str, words: list[str]) -> None:
         """``loadrt name words...``; whatever was made is taken back when the module refuses."""
-        module_name = os.path.splitext(os.path.basename(name))[0] if name.endswith(".py") else name
+        module_name = name_of(name)
         if self.hal.segment.locks & LOCK_LOAD:
             raise HalError("HAL is locked, loading of programs is not permitted", -1)
         if module_name in self._components:
             raise HalError(f"{module_name}: already exists", -17)
-        load = find_component(name) or realtime_module(name).load
+        load = self._loader(name)
         self.hal.segment.skip_ids(2)
         self._loading = []
         try:
@@ -177,6 +182,16 @@ class Host:
         for comp in made:
             if comp.name == module_name:
                 comp.record.args = " ".join(words)
+
+    @staticmethod
+    def _loader(name: str) -> Callable[[Host, dict[str, str]], None]:
+        """What loads a module; an installed component in C goes before a built-in one of its name."""
+        library = native_library(name)
+        if library is not None:
+            from hal import native
+
+            return partial(native.load, library)
+        return find_component(name) or realtime_module(name).load
 
     def component(self, name: str) -> Component:
         """Register a component in this process; called from a module's ``load``."""
@@ -223,12 +238,16 @@ class Host:
         """Offer something (a kinematics) to the modules loaded later; it goes with the module that is loading."""
         self._provided[what] = (self._loading[-1] if self._loading else None, thing)
 
-    def require(self, what: str) -> Any:
-        """What another module provided; HalError where none did."""
-        try:
-            return self._provided[what][1]
-        except KeyError:
-            raise HalError(f"no {what} is loaded; a module that provides it must be loaded before this one") from None
+    def provided(self) -> list[str]:
+        """What can be required now."""
+        return list(self._provided)
+
+    def require(self, what: str, default: Any = None) -> Any:
+        """What another module provided, else ``default``; HalError where there is neither."""
+        _, thing = self._provided.get(what, (None, default))
+        if thing is None:
+            raise HalError(f"no {what} is loaded; a module that provides it must be loaded before this one")
+        return thing
 
     # ---- functions ----
 
@@ -347,7 +366,19 @@ class Host:
             self.unload(name)
         if self._simulated is not None:
             self._simulated.close()
+        if self._awake is not None:
+            os.close(self._awake)
         self.hal.close()
+
+
+def stay_awake() -> int | None:
+    """Keep the processors out of the sleep that they wake from late and with cold caches, while this file is open."""
+    try:
+        file = os.open(LATENCY_FILE, os.O_WRONLY | os.O_CLOEXEC)
+    except OSError:
+        return None
+    os.write(file, bytes(4))  # the latency allowed: 0 us
+    return file
 
 
 def _suggest(name: str, known: Any) -> str:

@@ -115,10 +115,20 @@ def test_lists_change_while_the_thread_runs(running: Host) -> None:
 def test_threads_keep_the_ratio_of_their_periods(host: Host) -> None:
     host.load("threads", ["name1=fast", "period1=200000", "name2=slow", "period2=1000000"])
     fast, slow = host.hal.segment.threads()
-    begin = fast.cycles, slow.cycles
-    while slow.cycles < begin[1] + 20:
-        pass
-    assert abs((fast.cycles - begin[0]) - 5 * (slow.cycles - begin[1])) <= 5
+
+    def cycles() -> tuple[int, int]:
+        """Of both at one time: the slow one has not moved while the fast one was read."""
+        while True:
+            slowly = slow.cycles
+            quickly = fast.cycles
+            if slow.cycles == slowly:
+                return quickly, slowly
+
+    begin = end = cycles()
+    while end[1] < begin[1] + 20:
+        time.sleep(0.001)
+        end = cycles()
+    assert abs((end[0] - begin[0]) - 5 * (end[1] - begin[1])) <= 5
 
 
 def test_a_slower_thread_cannot_come_first(host: Host) -> None:

@@ -1,0 +1,2 @@
+/* So that a component may include rtapi_gfp.h. */
+#include "rtapi_slab.h"

@@ -1,0 +1,2 @@
+/* So that a component may include rtapi_math.h. */
+#include <math.h>
