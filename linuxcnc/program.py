@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
 import linuxcnc
+from linuxcnc._connection import open_channel
+from linuxcnc._error import text_of
 from nml import clock
 from nml.channel import Channel
+from nml.emc import EMC_OPERATOR_ERROR
 from nml.emc.emcmot import EMCMOT_STATUS
 from nml.errors import PyemcError
 
 HOMING_TIMEOUT = 600.0  # controller seconds
-STATE_TIMEOUT = 5.0  # host seconds for E-stop reset, power and mode
+STATE_TIMEOUT = 30.0  # host seconds for E-stop reset, power, mode and loading
 LOOK = 0.05  # host seconds between looks at a running program
 AXES = "XYZABCUVW"
-ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
 
 
 class ProgramError(PyemcError):
@@ -69,58 +72,49 @@ class Operator:
         self._display = display
         self._status = linuxcnc.stat()
         self._command = linuxcnc.command()
-        self._errors = linuxcnc.error_channel()
+        self._resumer = linuxcnc.command()
+        self._messages = open_channel("emcError")
+        deque(iter(self._messages.read, None), maxlen=0)  # what was told before is not about this program
 
-    def _operator_errors(self) -> list[str]:
-        """Pass operator messages on; returns those that are errors."""
-        errors = []
-        while (message := self._errors.poll()) is not None:
-            kind, text = message
-            if kind in ERRORS:
-                errors.append(text)
-            else:
-                self._display.say(text)
-        return errors
-
-    def _refused(self, doing: str) -> ProgramError:
-        errors = self._operator_errors()
-        return ProgramError(errors[0] if errors else f"{doing} was refused")
+    def _tell(self) -> None:
+        """Show the operator's messages, but for the errors that are the reason for a failure here."""
+        for message in iter(self._messages.read, None):
+            if not isinstance(message, EMC_OPERATOR_ERROR) or message.id != self._command.serial:
+                self._display.say(text_of(message))
 
     def _look(self) -> linuxcnc.stat:
         self._check()
         self._status.poll()
         return self._status
 
-    def _reach(self, condition: Callable[[linuxcnc.stat], bool], doing: str, timeout: float) -> None:
-        """Wait for a state of the machine; ProgramError with the operator's message when it does not come."""
-        deadline = clock.host_now() + timeout
-        while not condition(self._look()):
-            errors = self._operator_errors()
-            if errors:
-                raise ProgramError(errors[0])
-            if clock.host_now() > deadline:
-                raise ProgramError(f"{doing}: nothing happened for {timeout:g} s")
-            self._status.wait(LOOK)
-
     def prepare(self) -> None:
         """Out of E-stop, power on, all joints homed."""
         command = self._command
         command.state(linuxcnc.STATE_ESTOP_RESET)
-        self._reach(lambda s: s.task_state != linuxcnc.STATE_ESTOP, "E-stop reset", STATE_TIMEOUT)
+        self._done("E-stop reset")
         command.state(linuxcnc.STATE_ON)
-        self._reach(lambda s: s.task_state == linuxcnc.STATE_ON, "machine on", STATE_TIMEOUT)
+        self._done("machine on")
         command.mode(linuxcnc.MODE_MANUAL)
+        self._done("manual mode")
         command.home(-1)
-        self._reach(lambda s: all(s.homed[: s.joints]), "homing", HOMING_TIMEOUT / clock.speed() + STATE_TIMEOUT)
-        command.wait_complete()
+        self._done("homing", HOMING_TIMEOUT / clock.speed() + STATE_TIMEOUT)
 
     def open(self, path: Path) -> None:
         """Load the program."""
         self._command.mode(linuxcnc.MODE_AUTO)
-        self._command.wait_complete()
+        self._done("auto mode")
         self._command.program_open(str(path))
-        if self._command.wait_complete() != linuxcnc.RCS_DONE:
-            raise self._refused(f"opening {path}")
+        self._done(f"opening {path}")
+
+    def _done(self, doing: str, timeout: float = STATE_TIMEOUT) -> None:
+        """Wait for the end of the last order; ProgramError with its messages when it was not done."""
+        deadline = clock.host_now() + timeout
+        while (result := self._command.result(min(LOOK, timeout))) is None:
+            self._check()
+            if clock.host_now() > deadline:
+                raise ProgramError(f"{doing}: nothing happened for {timeout:g} s")
+        if not result:
+            raise ProgramError("; ".join(result.messages) or f"{doing} was {result.outcome.value}")
 
     def run(self, path: Path) -> Progress:
         """Run the loaded program to its end."""
@@ -149,23 +143,20 @@ class Operator:
 
     def _ended(self) -> bool:
         """Whether the program is over; ProgramError when it ended before its end."""
-        errors = self._operator_errors()
-        if errors:
-            self._stop()
-            raise ProgramError(errors[0])
+        result = self._command.result(0.0)
         status = self._status
-        if status.task_state != linuxcnc.STATE_ON:
-            raise ProgramError("the machine was switched off while the program was running")
+        if result is not None:
+            if result:
+                self._tell()
+                return True
+            off = status.task_state != linuxcnc.STATE_ON
+            why = "the machine was switched off while the program was running" if off else "the program was aborted"
+            raise ProgramError("; ".join(result.messages) or why)
+        self._tell()
         if status.interp_state == linuxcnc.INTERP_PAUSED and status.task_paused:
             self._display.say(f"line {status.motion_line or status.current_line}: the program paused; going on")
-            self._command.auto(linuxcnc.AUTO_RESUME)
-            self._status.poll()
-            return False
-        if status.echo_serial_number < self._command.serial or status.state == linuxcnc.RCS_EXEC:
-            return False
-        if status.state == linuxcnc.RCS_ERROR:
-            raise self._refused("running the program")
-        return status.interp_state == linuxcnc.INTERP_IDLE
+            self._resumer.auto(linuxcnc.AUTO_RESUME)
+        return False
 
     def _follow(self, progress: Progress) -> None:
         status = self._status
@@ -175,10 +166,6 @@ class Operator:
         if status.tool_in_spindle != progress.tool:
             progress.tool = status.tool_in_spindle
             progress.tool_changes += 1
-
-    def _stop(self) -> None:
-        self._command.abort()
-        self._command.wait_complete()
 
     def worst_following_error(self) -> float:
         """Largest following error of any joint since the machine was switched on, in machine units."""

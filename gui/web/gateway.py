@@ -8,7 +8,6 @@ the owner of the machine has given this program an operator's token.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import math
 from collections.abc import Awaitable, Callable
@@ -21,6 +20,7 @@ import linuxcnc
 from gui.web.access import Role, bearer
 from gui.web.calls import CallError
 from gui.web.machine import Machine
+from gui.web.programjogs import ProgramJogs
 from linuxcnc._connection import error, open_channel
 from nml.channel import Channel
 from nml.codecs import packed
@@ -95,15 +95,15 @@ def describe(name: Any) -> dict[str, Any]:
 class Connection:
     """One client of the gateway."""
 
-    def __init__(self, socket: web.WebSocketResponse, machine: Machine, role: Role) -> None:
+    def __init__(self, socket: web.WebSocketResponse, machine: Machine, jogs: ProgramJogs, role: Role) -> None:
         self._socket = socket
         self._machine = machine
+        self._jogs = jogs
         self._role = role
         self._commands: Channel = open_channel("emcCommand")
         self._subscriptions: dict[str, asyncio.Task[None]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._binary = socket.ws_protocol == MSGPACK
-        self._jogs: set[tuple[int, int]] = set()  # continuous ones: axis or joint, and which of the two
 
     async def send(self, frame: dict[str, Any]) -> None:
         if self._binary:
@@ -120,17 +120,18 @@ class Connection:
         finally:
             for task in (*self._subscriptions.values(), *self._tasks):
                 task.cancel()
-            self._stop_jogs()
+            self._jogs.end()
             self._commands.close()
 
     async def _obey(self, data: str | bytes) -> None:
         number = None
         try:
+            self._jogs.beat()
             frame = read_frame(data, self._binary)
             number = frame.get("id")
             actions: dict[str, Callable[[dict[str, Any]], Awaitable[None]]] = {
                 "command": self._command, "subscribe": self._subscribe, "unsubscribe": self._unsubscribe,
-                "get": self._get, "describe": self._describe,
+                "get": self._get, "describe": self._describe, "beat": self._beat,
             }  # fmt: skip
             for name, action in actions.items():
                 if name in frame:
@@ -146,24 +147,27 @@ class Connection:
         if self._role is not Role.OPERATOR:
             raise Wrong("readers may look, not command")
         message = command_message(frame["command"], frame.get("fields", {}))
-        self._note_jog(message)
-        serial = await asyncio.to_thread(self._commands.write, message)
+        try:
+            serial = await self._give(message)
+        except CallError as reason:
+            raise Wrong(reason.text.format(**reason.more)) from None
         await self.send({"id": frame.get("id"), "serial": serial})
         task = asyncio.create_task(self._follow(frame.get("id"), serial))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    def _note_jog(self, message: Command) -> None:
-        """Remember what would move on if this client went away."""
-        if isinstance(message, (EMC_JOG_CONT, EMC_JOG_STOP)):
-            jog = (message.joint_or_axis, message.jjogmode)
-            (self._jogs.add if isinstance(message, EMC_JOG_CONT) else self._jogs.discard)(jog)
+    async def _give(self, message: Command) -> int:
+        """Put a command into task's queue, a continuous jog as what stops by itself; its serial number."""
+        if isinstance(message, EMC_JOG_CONT):
+            return await self._jogs.go_on(message)
+        if isinstance(message, EMC_JOG_STOP):
+            await self._jogs.stop(message)
+        else:
+            self._jogs.drop()
+        return await asyncio.to_thread(self._commands.write, message)
 
-    def _stop_jogs(self) -> None:
-        """The client has gone: what it has set going stops."""
-        for which, mode in self._jogs:
-            with contextlib.suppress(NmlError):
-                self._commands.write(EMC_JOG_STOP(joint_or_axis=which, jjogmode=mode))
+    async def _beat(self, frame: dict[str, Any]) -> None:
+        """Nothing to do: any frame keeps the jogs of this program going."""
 
     async def _follow(self, number: Any, serial: int) -> None:
         """Tell how a command ended."""
@@ -234,7 +238,7 @@ def read_frame(data: str | bytes, binary: bool) -> dict[str, Any]:
 
 
 async def serve(
-    request: web.Request, machine: Machine, role_of: Callable[[str | None], Role | None]
+    request: web.Request, machine: Machine, jogs: ProgramJogs, role_of: Callable[[str | None], Role | None]
 ) -> web.StreamResponse:
     """One connection from its upgrade to its end."""
     socket = web.WebSocketResponse(protocols=(JSON, MSGPACK), heartbeat=HEARTBEAT, max_msg_size=LONGEST_FRAME)
@@ -245,7 +249,7 @@ async def serve(
     if role is None:
         await socket.close(code=BAD_TOKEN, message=b"wrong token")
     else:
-        await Connection(socket, machine, role).converse()
+        await Connection(socket, machine, jogs, role).converse()
     return socket
 
 

@@ -14,16 +14,13 @@ import asyncio
 import itertools
 import logging
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import linuxcnc
 from gui.web.calls import CallError
 from gui.web.machine import Lane, Machine
 from gui.web.state import State
 from nml import clock
-
-if TYPE_CHECKING:
-    from gui.web.client import Client
 
 log = logging.getLogger(__name__)
 
@@ -32,6 +29,14 @@ BEAT_TIMEOUT = 0.25  # s without a beat until the jog stops
 TICK = 0.04  # s between extensions
 AHEAD = 0.25  # s of travel beyond the stopping distance
 NEAREST = 1e-6  # machine units: nearer to a limit than this is at the limit
+FARTHEST = 1e6  # machine units that a joint without a home may be jogged
+
+
+class Client(Protocol):
+    """Who holds a jog: a page, or a program at the gateway."""
+
+    @property
+    def id(self) -> int: ...
 
 
 @dataclass(slots=True)
@@ -53,6 +58,15 @@ class Target:
     def position(self, values: dict[str, Any]) -> float:
         """Where it stands."""
         return float(values["joint_position" if self.flag else "position"][self.index])
+
+
+def target_of(description: dict[str, Any], *, joint: bool, homed: bool) -> Target:
+    """What is jogged, by its entry in the configuration; limits are known where it is homed."""
+    low, high = (description["min"], description["max"]) if homed else (-FARTHEST, FARTHEST)
+    acceleration = max(description["max_acceleration"], 1e-6)
+    if joint:
+        return Target(None, description["number"], description["number"], acceleration, low, high)
+    return Target(description["letter"], None, description["index"], acceleration, low, high)
 
 
 @dataclass(slots=True)
@@ -79,6 +93,10 @@ class Jogging:
         self._numbers = itertools.count(1)
         self.stops = 0  # how often everything was stopped; a start that was asked for before is void
         state.update({"jog": []})
+
+    def find(self, number: int) -> Jog | None:
+        """A jog that goes on."""
+        return self._jogs.get(number)
 
     def beat(self, client: Client, number: Any) -> None:
         """The page says that the button is still held."""

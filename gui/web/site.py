@@ -17,6 +17,7 @@ from gui.web import access, frames, gateway, texts
 from gui.web.access import Role
 from gui.web.calls import CallError
 from gui.web.client import Client
+from gui.web.programjogs import ProgramJogs
 from gui.web.server import Server
 from gui.web.wizard.server import WizardServer
 
@@ -216,4 +217,5 @@ async def _gateway(request: web.Request) -> web.StreamResponse:
         return refusal(403, "origin", "pages of other servers may not connect here")
     if not server.access.needs_token:
         return refusal(403, "token", "the gateway needs tokens; [WEB]TOKEN_FILE names their file")
-    return await gateway.serve(request, server.machine, server.access.role)
+    jogs = ProgramJogs(server.machine, server.jogging, server.config)
+    return await gateway.serve(request, server.machine, jogs, server.access.role)

@@ -1,7 +1,11 @@
 """NML messages by name over a WebSocket: what a client in any language does with /nml."""
 
 import asyncio
+import contextlib
 import json
+import signal
+import subprocess
+import sys
 import time
 
 import aiohttp
@@ -10,7 +14,7 @@ import pytest
 
 import linuxcnc
 from nml import namespace
-from tests.support.machine import wait_until
+from tests.support.machine import ROOT, copy_mill, running, wait_until
 from tests.support.webclient import shared_web_mill
 
 pytestmark = pytest.mark.process
@@ -162,21 +166,36 @@ def test_pages_of_other_servers_do_not_get_in(port):
         talk(port, work, Origin="http://evil.example")
 
 
-def test_a_client_that_goes_away_leaves_no_jog_behind(port):
-    async def work(gateway):
-        orders = (
-            ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ESTOP_RESET}),
-            ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ON}),
-            ("EMC_JOG_CONT", {"joint_or_axis": 0, "jjogmode": 1, "vel": 5.0}),
-        )
-        for number, (name, fields) in enumerate(orders):
-            await gateway.send(command=name, fields=fields, id=number)
-            await gateway.until(lambda frame, number=number: frame.get("id") == number)
-        await gateway.send(subscribe="emcStatus", interval=0.02)
-        await gateway.until(lambda frame: "fields" in frame and frame["fields"]["motion"]["joint"][0]["output"] > 1.0)
+async def jogging(gateway):
+    """Switch on and jog joint 0; comes back when it moves."""
+    orders = (
+        ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ESTOP_RESET}),
+        ("EMC_TASK_SET_STATE", {"state": linuxcnc.STATE_ON}),
+        ("EMC_TASK_SET_MODE", {"mode": linuxcnc.MODE_MANUAL}),
+        ("EMC_TRAJ_SET_MODE", {"mode": linuxcnc.TRAJ_MODE_FREE}),
+    )
+    for number, (name, fields) in enumerate(orders):
+        await gateway.send(command=name, fields=fields, id=number)
+        await gateway.until(lambda frame, number=number: frame.get("id") == number and "result" in frame)
+    await gateway.send(subscribe="emcStatus", interval=0.02)
+    began = None
+    while True:
+        await gateway.send(command="EMC_JOG_CONT", fields=JOG, id=99)
+        frame = await gateway.until(lambda frame: "fields" in frame)
+        position = frame["fields"]["motion"]["joint"][0]["output"]
+        began = position if began is None else began
+        if position > began + 1.0:
+            return
 
-    talk(port, work)
+
+JOG = {"joint_or_axis": 0, "jjogmode": 1, "vel": 5.0}
+LONGEST_WAY = 40.0  # mm after the failure; a jog that goes on passes it within seconds
+
+
+def comes_to_rest():
+    """The machine stands, not far from where it is now."""
     status = linuxcnc.stat()
+    at = status.joint_position[0]
 
     def stands():
         before = status.joint_position[0]
@@ -185,4 +204,72 @@ def test_a_client_that_goes_away_leaves_no_jog_behind(port):
         return status.joint_position[0] == before
 
     wait_until(stands, "at rest")
-    assert status.joint_position[0] < 100.0
+    assert abs(status.joint_position[0] - at) < LONGEST_WAY
+
+
+def test_a_client_that_goes_away_leaves_no_jog_behind(port):
+    talk(port, jogging)
+    comes_to_rest()
+
+
+def test_a_jog_ends_when_no_frames_come(port):
+    async def work(gateway):
+        await jogging(gateway)
+        await asyncio.to_thread(comes_to_rest)
+
+    talk(port, work)
+
+
+def test_a_jog_goes_on_while_frames_come_and_stops_by_order(port):
+    async def work(gateway):
+        await jogging(gateway)
+        began = linuxcnc.stat().joint_position[0]
+        while linuxcnc.stat().joint_position[0] < began + 5.0:
+            await gateway.send(beat=1)
+            await asyncio.sleep(0.05)
+        await gateway.send(command="EMC_JOG_STOP", fields={"joint_or_axis": 0, "jjogmode": 1}, id=100)
+        await gateway.until(lambda frame: frame.get("id") == 100 and "result" in frame)
+        await asyncio.to_thread(comes_to_rest)
+
+    talk(port, work)
+
+
+@pytest.mark.parametrize("fields", [{**JOG, "vel": 0.0}, {**JOG, "joint_or_axis": 7}])
+def test_a_jog_of_nothing_is_refused(port, fields):
+    async def work(gateway):
+        await gateway.send(command="EMC_JOG_CONT", fields=fields, id=1)
+        return await gateway.until(lambda frame: frame.get("id") == 1)
+
+    assert talk(port, work)["error"] in ("vel must not be 0", "there is no such axis or joint")
+
+
+@contextlib.contextmanager
+def server_of_its_own(folder):
+    """A web server beside a machine that has another display: the server and its port."""
+    tokens = folder / "tokens"
+    tokens.write_text(f"operator {OPERATOR}\n")
+    tokens.chmod(0o600)
+    ini = copy_mill(folder, changes={"DISPLAY.PROGRAM_PREFIX": str(folder)})
+    ini.write_text(f"{ini.read_text()}\n[WEB]\nTOKEN_FILE = tokens\n")
+    with running(ini) as machine:
+        machine.port()
+        command = [sys.executable, "-m", "gui.web", "-ini", str(ini), "--port", "0", "--no-browser"]
+        server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        try:
+            yield server, int(server.stdout.readline().rstrip("/\n").rpartition(":")[2])
+        finally:
+            server.kill()
+            server.communicate()
+
+
+@pytest.mark.parametrize("signal_number", [signal.SIGSTOP, signal.SIGKILL])
+def test_a_server_that_hangs_or_is_killed_in_mid_jog_leaves_a_machine_at_rest(tmp_path, signal_number):
+    async def work(gateway):
+        await jogging(gateway)
+        server.send_signal(signal_number)
+        await asyncio.to_thread(comes_to_rest)
+
+    with server_of_its_own(tmp_path) as (server, port):
+        talk(port, work)
+        status = linuxcnc.stat()
+        assert status.task_state == linuxcnc.STATE_ON  # the machine itself goes on

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import linuxcnc
 from gui.web.calls import Caller, CallError, Right, method
-from gui.web.jogging import Target
+from gui.web.jogging import Target, target_of
 from gui.web.machine import Lane
 from gui.web.methods.operating import STOPPED, set_teleop
-
-FARTHEST = 1e6  # machine units that a joint without a home may be jogged
 
 
 @method("jog.start", Right.CONTROLS)
@@ -80,7 +78,4 @@ async def _prepare(caller: Caller, axis: str | None, joint: int | None) -> Targe
     await caller.server.machine.mode(linuxcnc.MODE_MANUAL)
     await set_teleop(caller, on=axis is not None)
     homed = axis is not None or values["homed"][joint]
-    low, high = (one["min"], one["max"]) if homed else (-FARTHEST, FARTHEST)
-    index = int(one["index"] if axis is not None else one["number"])
-    letter = axis.upper() if axis is not None else None
-    return Target(letter, joint, index, max(one["max_acceleration"], 1e-6), low, high)
+    return target_of(one, joint=axis is None, homed=bool(homed))
