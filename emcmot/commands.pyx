@@ -290,13 +290,21 @@ cdef int execute(Motion* m, const EMCMOT_COMMAND* c, const Entry* entry) noexcep
 
 
 cdef int checked(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
+    """Check and run a command; no move is taken behind one that was refused, until an abort: it would cut a corner."""
     cdef const Entry* entry = &TABLE[c.command]
-    cdef int bad = check_numbers(m, c, entry.needs)
-    if not bad:
-        bad = check_indices(m, c, entry.needs)
-    if not bad:
-        bad = check_state(m, c, entry.needs)
-    return bad if bad else execute(m, c, entry)
+    cdef int result
+    if entry.needs & MOVE and m.coord_error:
+        return MotCommandStatus_INVALID_COMMAND
+    result = check_numbers(m, c, entry.needs)
+    if not result:
+        result = check_indices(m, c, entry.needs)
+    if not result:
+        result = check_state(m, c, entry.needs)
+    if not result:
+        result = execute(m, c, entry)
+    if result and entry.needs & MOVE:
+        m.coord_error = 1
+    return result
 
 
 cdef void sign_of_life(Motion* m) noexcept nogil:

@@ -20,7 +20,6 @@ from emcmot._messages cimport (
 )
 from emcmot.eoffset cimport eoffset_cycle
 from emcmot.free_planner cimport free_planner_step
-from emcmot.homing cimport homing_cycle
 from emcmot.jog cimport end_jogs, jog_cycle
 from emcmot.joint cimport command_joint, read_joints, write_joints
 from emcmot.modes cimport fall_to_free, resting, set_mode, stop_all, switch_kinematics
@@ -29,18 +28,7 @@ from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport spindle_cycle
 from emcmot.state cimport LINES, Axis, Joint, Motion
 from emcmot.synchronised cimport synchronised_cycle
-from emcmot.tp.tp cimport (
-    TP_OK,
-    TpIo,
-    tp_get_status,
-    tp_run_cycle,
-    tp_set_adaptive_scale,
-    tp_set_feed_hold,
-    tp_set_feed_scale,
-    tp_set_rapid_scale,
-    tp_set_reverse,
-    tp_take_io,
-)
+from emcmot.tp.tp cimport TP_OK, TpIo
 from emcmot.world cimport CHASE_LOST, command_world, update_world_feedback, world_from_joints
 
 from emcmot.layout import same_size
@@ -145,9 +133,9 @@ cdef double adaptive_scale(Motion* m, int enables) noexcept nogil:
         m.adaptive_reverse = m.adaptive_feed < 0.0
     wanted = m.command_reverse != m.adaptive_reverse
     if wanted != m.tp_status.reversing and not m.tp_status.done:
-        if tp_set_reverse(m.tp, wanted) != TP_OK:
+        if m.planner.set_reverse(m.tp, wanted) != TP_OK:
             return 0.0
-        tp_get_status(m.tp, &m.tp_status)
+        m.planner.get_status(m.tp, &m.tp_status)
     return min(fabs(m.adaptive_feed), 1.0)
 
 
@@ -156,10 +144,10 @@ cdef void set_overrides(Motion* m) noexcept nogil:
     cdef int enables = m.tp_status.enables if m.tp_status.motion_type else m.enables
     m.adaptive_scale = adaptive_scale(m, enables)
     cdef double feed_scale = min(m.feed_scale, m.max_feed_scale)
-    tp_set_feed_scale(m.tp, feed_scale)
-    tp_set_rapid_scale(m.tp, m.rapid_scale)
-    tp_set_adaptive_scale(m.tp, m.adaptive_scale)
-    tp_set_feed_hold(m.tp, m.feed_hold)
+    m.planner.set_feed_scale(m.tp, feed_scale)
+    m.planner.set_rapid_scale(m.tp, m.rapid_scale)
+    m.planner.set_adaptive_scale(m.tp, m.adaptive_scale)
+    m.planner.set_feed_hold(m.tp, m.feed_hold)
     m.net_feed_scale = 1.0
     if enables & Enables_FS:
         m.net_feed_scale *= m.rapid_scale if m.tp_status.motion_type == TYPE_TRAVERSE else feed_scale
@@ -219,8 +207,8 @@ cdef void move_teleop(Motion* m) noexcept nogil:
 cdef void move_coord(Motion* m) noexcept nogil:
     cdef double pose[MAX_AXES]
     cdef int n
-    tp_run_cycle(m.tp)
-    tp_get_status(m.tp, &m.tp_status)
+    m.planner.run_cycle(m.tp)
+    m.planner.get_status(m.tp, &m.tp_status)
     for n in range(MAX_AXES):
         m.axis[n].pos_cmd = m.tp_status.pos[n]
         pose[n] = m.tp_status.pos[n] + m.eoffset[n]
@@ -245,8 +233,8 @@ cdef void move(Motion* m) noexcept nogil:
         move_coord(m)
         return
     if not m.tp_status.done:  # what fall_to_free left to the planner ends out of sight
-        tp_run_cycle(m.tp)
-        tp_get_status(m.tp, &m.tp_status)
+        m.planner.run_cycle(m.tp)
+        m.planner.get_status(m.tp, &m.tp_status)
     if m.mode == MotionState_TELEOP:
         move_teleop(m)
     else:
@@ -257,7 +245,7 @@ cdef void write_queued_outputs(Motion* m) noexcept nogil:
     """Digital and analog outputs that belong to a move that starts now."""
     cdef TpIo io
     cdef int n
-    while tp_take_io(m.tp, &io):
+    while m.planner.take_io(m.tp, &io):
         for n in range(MAX_DIO):
             if io.dout_mask >> n & 1:
                 m.digital_out[n] = io.dout_value >> n & 1
@@ -316,7 +304,7 @@ cdef void judge_rest(Motion* m) noexcept nogil:
 
 cdef void controller(Motion* m) noexcept nogil:
     m.heartbeat += 1
-    tp_get_status(m.tp, &m.tp_status)
+    m.planner.get_status(m.tp, &m.tp_status)
     read_joints(m)
     update_world_feedback(m)
     watch_task(m)
@@ -326,7 +314,7 @@ cdef void controller(Motion* m) noexcept nogil:
     set_overrides(m)
     synchronised_cycle(m)
     probe_cycle(m)
-    homing_cycle(m)
+    m.homing.cycle(m)
     jog_cycle(m)
     eoffset_cycle(m)
     spindle_cycle(m)

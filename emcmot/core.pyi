@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from emcmot.kins.kinematics import KinematicsModule
+from emcmot.modules import HomingModule, PlannerModule
 
 LIMITS: dict[str, tuple[int, int, int]]
 
@@ -15,4 +16,11 @@ class Pin(NamedTuple):
 class Core:
     kinematics: KinematicsModule
     pins: list[Pin]
-    def __init__(self, kinematics: KinematicsModule, servo_period: float = 0.001, **numbers: int) -> None: ...
+    def __init__(
+        self,
+        kinematics: KinematicsModule,
+        servo_period: float = 0.001,
+        planner: PlannerModule | None = None,
+        homing: HomingModule | None = None,
+        **numbers: int,
+    ) -> None: ...

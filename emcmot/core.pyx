@@ -11,14 +11,14 @@ from emcmot._messages cimport (
     MotionState_FREE,
     TermCond_BLEND,
 )
-from emcmot.homing cimport update_homed
 from emcmot.kins.kinematics cimport KinematicsModule
+from emcmot.modules cimport HomingModule, PlannerModule
 from emcmot.pins cimport pins_of
 from emcmot.state cimport Joint, Motion
-from emcmot.tp.tp cimport tp_create, tp_free, tp_get_status, tp_set_cycle_time
 from emcmot.world cimport refresh_planner_limits
 
 from emcmot.layout import same_size
+from emcmot.modules import HOMING, PLANNER
 from nml.errors import HalError
 
 same_size(__name__, "Motion", sizeof(Motion))
@@ -43,7 +43,10 @@ LIMITS = {
 cdef class Core:
     """One motion controller; HalError where the numbers do not fit each other."""
 
-    def __init__(self, KinematicsModule kinematics, double servo_period=0.001, **numbers):
+    def __init__(
+        self, KinematicsModule kinematics, double servo_period=0.001, PlannerModule planner=None,
+        HomingModule homing=None, **numbers,
+    ):
         settings = {name: default for name, (default, _, _) in LIMITS.items()}
         settings.update(numbers)
         for name, (_, low, high) in LIMITS.items():
@@ -59,7 +62,9 @@ cdef class Core:
         self.m = <Motion*>calloc(1, sizeof(Motion))
         if self.m == NULL:
             raise MemoryError
-        self.m.tp = tp_create(QUEUE_SIZE)
+        self.planner, self.homing = planner or PLANNER, homing or HOMING
+        self.m.planner, self.m.homing = &self.planner.table, &self.homing.table
+        self.m.tp = self.m.planner.create(QUEUE_SIZE)
         if self.m.tp == NULL:
             raise MemoryError
         self._set_defaults(servo_period, settings)
@@ -68,7 +73,7 @@ cdef class Core:
     def __dealloc__(self):
         if self.m != NULL:
             if self.m.tp != NULL:
-                tp_free(self.m.tp)
+                self.m.planner.free(self.m.tp)
             free(self.m)
 
     def _set_defaults(self, double servo_period, dict settings):
@@ -89,7 +94,7 @@ cdef class Core:
         m.enables = Enables_SS | Enables_FS | Enables_FH
         m.sync_spindle = m.index_spindle = -1
         m.term_cond = TermCond_BLEND
-        tp_set_cycle_time(m.tp, servo_period)
+        m.planner.set_cycle_time(m.tp, servo_period)
         for n in range(m.max_joints):
             joint = &m.joint[n]
             joint.min_limit, joint.max_limit = -NO_LIMIT, NO_LIMIT
@@ -103,8 +108,8 @@ cdef class Core:
             m.axis[n].locking_joint = -1
         for n in range(MAX_SPINDLES):
             m.spindle[n].scale = m.spindle[n].net_scale = 1.0
-            m.spindle[n].at_speed = 1
+            m.spindle[n].at_speed = m.spindle[n].brake = 1
             m.spindle[n].max_speed, m.spindle[n].max_reverse_speed = UNLIMITED_SPINDLE, -UNLIMITED_SPINDLE
         refresh_planner_limits(m)
-        update_homed(m)
-        tp_get_status(m.tp, &m.tp_status)
+        m.homing.update_homed(m)
+        m.planner.get_status(m.tp, &m.tp_status)

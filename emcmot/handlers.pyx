@@ -25,15 +25,7 @@ from emcmot._messages cimport (
     MotionState_FREE,
     MotionState_TELEOP,
 )
-from emcmot.homing cimport (
-    HOME_IDLE,
-    SEQUENCE_IDLE,
-    home_all,
-    home_joint,
-    homing_is_active,
-    rename_position,
-    update_homed,
-)
+from emcmot.homing cimport HOME_IDLE, SEQUENCE_IDLE, rename_position
 from emcmot.jog cimport (
     JOG_ABSOLUTE,
     JOG_CONTINUOUS,
@@ -49,7 +41,7 @@ from emcmot.modes cimport resting, stop_all
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport orient_spindle, stop_spindle
 from emcmot.state cimport COMP_POINTS, Compensation, Joint, Motion, Spindle
-from emcmot.tp.tp cimport TP_OK, tp_pause, tp_resume, tp_set_reverse, tp_step_once
+from emcmot.tp.tp cimport TP_OK
 from emcmot.world cimport kinematics_usable
 
 from emcmot.layout import same_size
@@ -122,19 +114,19 @@ cdef int coord_mode(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 
 cdef int pause(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.mode == MotionState_COORD:
-        tp_pause(m.tp)
+        m.planner.pause(m.tp)
     return MotCommandStatus_OK
 
 
 cdef int resume(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    tp_resume(m.tp)
+    m.planner.resume(m.tp)
     m.stepping = 0
     return MotCommandStatus_OK
 
 
 cdef int step(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if m.mode == MotionState_COORD:
-        tp_step_once(m.tp)
+        m.planner.step_once(m.tp)
         m.stepping = 1
     return MotCommandStatus_OK
 
@@ -142,14 +134,14 @@ cdef int step(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
 cdef int reverse(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if not m.tp_status.paused:
         return refuse(m, b"can't run in reverse: pause the program first")
-    if tp_set_reverse(m.tp, 1) != TP_OK:
+    if m.planner.set_reverse(m.tp, 1) != TP_OK:
         return refuse(m, b"can't run in reverse: the planner does not go back from here")
     m.command_reverse = not m.adaptive_reverse
     return MotCommandStatus_OK
 
 
 cdef int forward(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
-    if m.tp_status.reversing and tp_set_reverse(m.tp, 0) != TP_OK:
+    if m.tp_status.reversing and m.planner.set_reverse(m.tp, 0) != TP_OK:
         return refuse(m, b"can't run forward: pause the program first")
     m.command_reverse = m.adaptive_reverse
     return MotCommandStatus_OK
@@ -214,7 +206,7 @@ cdef int jog(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
     if c.vel == 0.0:
         snprintf(report(m), TEXT_SIZE, b"can't jog at speed 0")
         return MotCommandStatus_INVALID_PARAMS
-    if homing_is_active(m):
+    if m.homing.is_active(m):
         return refuse(m, b"Can't jog any joints while homing.")
     if c.mode:
         if m.mode == MotionState_TELEOP:
@@ -268,11 +260,11 @@ cdef int home(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
         return refuse(m, b"can't home a joint that is not active")
     stop_jogs(m)
     if c.joint == -1:
-        home_all(m)
+        m.homing.home_all(m)
     elif m.joint[c.joint].home.state != HOME_IDLE:
         return refuse(m, b"can't home: the joint is homing already")
     else:
-        home_joint(m, c.joint)
+        m.homing.home_joint(m, c.joint)
     return MotCommandStatus_OK
 
 
@@ -291,7 +283,7 @@ cdef int unhome(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
                 result = MotCommandStatus_INVALID_COMMAND
             else:
                 m.joint[n].home.homed = 0
-    update_homed(m)
+    m.homing.update_homed(m)
     return result
 
 

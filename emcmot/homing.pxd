@@ -1,6 +1,6 @@
 """Homing of joints and the home sequence of the machine."""
 
-from emcmot.state cimport Joint, Motion
+from emcmot.state cimport HomingInterface, Joint, Motion
 
 cdef enum HomeState:       # the numbers of LinuxCNC's pin joint.N.home-state
     HOME_IDLE = 0
@@ -52,11 +52,6 @@ cdef enum:
 cdef inline int homing_ignores_limits(const Joint* joint) noexcept nogil:
     return joint.home.homing and joint.home.flags & HOME_IGNORE_LIMITS
 
-cdef void homing_cycle(Motion* m) noexcept nogil
-cdef int home_joint(Motion* m, int number) noexcept nogil          # 0, or -1 refused with a report
-cdef void home_all(Motion* m) noexcept nogil
-cdef int homing_is_active(Motion* m) noexcept nogil
-cdef void cancel_homing(Motion* m) noexcept nogil
-cdef void update_homed(Motion* m) noexcept nogil
 cdef void rename_position(Joint* joint, double shift) noexcept nogil
 cdef void take_index(Joint* joint) noexcept nogil
+cdef const HomingInterface* homing_interface() noexcept nogil      # the homing of this package

@@ -486,3 +486,16 @@ state(HOME_LOCK, b"LOCK", state_lock)
 state(HOME_LOCK_WAIT, b"LOCK_WAIT", state_lock_wait)
 state(HOME_FINISHED, b"FINISHED", state_finished)
 state(HOME_ABORT, b"ABORT", state_abort)
+
+cdef HomingInterface BUILTIN
+
+BUILTIN.cycle = homing_cycle
+BUILTIN.home_joint = home_joint
+BUILTIN.home_all = home_all
+BUILTIN.is_active = homing_is_active
+BUILTIN.cancel = cancel_homing
+BUILTIN.update_homed = update_homed
+
+
+cdef const HomingInterface* homing_interface() noexcept nogil:
+    return &BUILTIN

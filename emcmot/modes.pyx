@@ -11,7 +11,7 @@ from libc.stdio cimport snprintf
 from emcmot._messages cimport MAX_AXES, MotionState_COORD, MotionState_FREE, MotionState_TELEOP
 from emcmot.eoffset cimport eoffsets_still, forget_eoffsets
 from emcmot.free_planner cimport free_planner_rest_at
-from emcmot.homing cimport SEQUENCE_IDLE, cancel_homing
+from emcmot.homing cimport SEQUENCE_IDLE
 from emcmot.jog cimport stop_jogs
 from emcmot.joint cimport limit_own_moves, set_joint_position
 from emcmot.kins.kinematics cimport Kinematics, select_way
@@ -19,7 +19,7 @@ from emcmot.probe cimport PROBE_OFF
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.spindle cimport stop_spindles
 from emcmot.state cimport Axis, Joint, Motion
-from emcmot.tp.tp cimport TP_OK, tp_abort, tp_resume, tp_set_pos
+from emcmot.tp.tp cimport TP_OK
 from emcmot.world cimport align_joints, limit_axis_moves, refresh_planner_limits, update_world_feedback, world_from_joints
 
 from emcmot.layout import same_size
@@ -60,12 +60,12 @@ cdef int resting(Motion* m) noexcept nogil:
 
 cdef void stop_all(Motion* m) noexcept nogil:
     """ABORT: whatever moves comes to rest under its limits, whatever waits is dropped."""
-    cancel_homing(m)
+    m.homing.cancel(m)
     stop_jogs(m)
     if not m.tp_status.done or m.tp_status.depth > 0:
-        tp_abort(m.tp)
+        m.planner.abort(m.tp)
     else:
-        tp_resume(m.tp)
+        m.planner.resume(m.tp)
     m.probing = PROBE_OFF
     m.pending_io_set = 0
     m.pending_io.dout_mask = 0
@@ -151,7 +151,7 @@ cdef void enter_coord(Motion* m) noexcept nogil:
     cdef int n
     for n in range(MAX_AXES):
         pos[n] = m.pos_cmd[n] - m.eoffset[n]
-    if tp_set_pos(m.tp, pos) == TP_OK:
+    if m.planner.set_pos(m.tp, pos) == TP_OK:
         end_teleop(m)
         m.mode = MotionState_COORD
         m.coord_error = 0

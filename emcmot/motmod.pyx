@@ -15,6 +15,7 @@ from emcmot.commands cimport run, sign_of_life
 from emcmot.controller cimport controller
 from emcmot.core cimport Core
 from emcmot.kins.kinematics cimport KinematicsModule
+from emcmot.modules cimport HomingModule, PlannerModule
 from emcmot.state cimport Motion
 from emcmot.status cimport fill_status
 from hal.cell cimport hal_at, hal_pin
@@ -25,6 +26,7 @@ from operator import itemgetter
 
 from emcmot.core import LIMITS
 from emcmot.layout import same_size
+from emcmot.modules import HOMING, PLANNER
 from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RO, HAL_S32, HAL_U32
 from nml.channel import Channel
 from nml.errors import HalError
@@ -317,11 +319,15 @@ def load(host, args: dict) -> None:
     kinematics = host.require("kinematics")
     if not isinstance(kinematics, KinematicsModule):
         raise HalError("motmod: what was loaded as kinematics is none")
+    planner, homing = host.require("planner", PLANNER), host.require("homing", HOMING)
+    for what, module, kind in (("planner", planner, PlannerModule), ("homing", homing, HomingModule)):
+        if not isinstance(module, kind):
+            raise HalError(f"motmod: what was loaded as {what} is none")
     periods = periods_of(args)
     numbers = {name: integer(name, args[name]) for name in LIMITS if name in args}
     renamed = renamed_pins(args, numbers)
     comp = host.component("motmod")
-    module = Motmod(kinematics, periods["servo_period_nsec"] * 1e-9, **numbers)
+    module = Motmod(kinematics, periods["servo_period_nsec"] * 1e-9, planner, homing, **numbers)
     comp.keep(module)
     module.connect()
     comp.on_unload(module.disconnect)

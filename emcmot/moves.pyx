@@ -21,7 +21,7 @@ from emcmot.arc cimport arc_box
 from emcmot.probe cimport PROBE_OFF, PROBE_QUEUED
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport LINES, Motion
-from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TP_TAP, TpSegment, tp_add
+from emcmot.tp.tp cimport TP_ARC, TP_FULL, TP_LINE, TP_OK, TP_TAP, TpSegment
 from emcmot.world cimport check_box, check_end_point
 
 from emcmot.layout import same_size
@@ -76,7 +76,7 @@ cdef const double* queue_end(Motion* m) noexcept nogil:
 cdef int queue(Motion* m, const TpSegment* s, const char* what, const EMCMOT_COMMAND* c) noexcept nogil:
     """Hand the segment, and the outputs that wait for a move, to the planner."""
     cdef int n
-    cdef int result = tp_add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
+    cdef int result = m.planner.add(m.tp, s, &m.pending_io if m.pending_io_set else NULL)
     if result == TP_FULL:
         snprintf(
             report(m, -1, s.id), TEXT_SIZE, b"Can't add %s move on line %ld: the motion queue is full", what, <long>s.id

@@ -42,7 +42,6 @@ from emcmot._messages cimport (
 )
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion, Spindle
-from emcmot.tp.tp cimport tp_set_planner_type, tp_set_vel_limit
 from emcmot.world cimport refresh_planner_limits
 
 from emcmot.layout import same_size
@@ -152,8 +151,8 @@ cdef int set_parameters(Motion* m, const EMCMOT_COMMAND* c) noexcept nogil:
             else:
                 (<double*>target)[0] = (<double*>(source + ROWS[i].source))[0]
     m.config_num += 1
-    tp_set_vel_limit(m.tp, m.vel_limit)
-    tp_set_planner_type(m.tp, m.planner_type)
+    m.planner.set_vel_limit(m.tp, m.vel_limit)
+    m.planner.set_planner_type(m.tp, m.planner_type)
     refresh_planner_limits(m)
     return MotCommandStatus_OK
 

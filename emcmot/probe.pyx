@@ -7,10 +7,8 @@ from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MotionState_COORD
 from emcmot.jog cimport stop_jogs
-from emcmot.homing cimport cancel_homing, homing_is_active
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Motion
-from emcmot.tp.tp cimport tp_abort
 
 from emcmot.layout import same_size
 
@@ -23,7 +21,7 @@ cdef void end_probe(Motion* m, const char* complaint) noexcept nogil:
     """Stop the probing move; with a complaint where the program cannot go on."""
     m.probing = PROBE_OFF
     m.stopping = 1
-    tp_abort(m.tp)
+    m.planner.abort(m.tp)
     if complaint != NULL:
         m.coord_error = 1
         snprintf(report(m), TEXT_SIZE, b"%s", complaint)
@@ -75,9 +73,9 @@ cdef void alarm(Motion* m) noexcept nogil:
     if m.mode == MotionState_COORD:
         if not m.tp_status.done and not m.stopping:
             end_probe(m, b"Probe tripped during non-probe move.")
-    elif homing_is_active(m):
+    elif m.homing.is_active(m):
         if not m.probe_home_inhibit:
-            cancel_homing(m)
+            m.homing.cancel(m)
             snprintf(report(m), TEXT_SIZE, b"Probe tripped during homing motion.")
     elif m.jog_active and not m.probe_jog_inhibit:
         stop_jogs(m)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from emcmot.core import Core
 from emcmot.kins.kinematics import KinematicsModule
+from emcmot.modules import HomingModule, PlannerModule
 from nml.emc.emcmot import EMCMOT_STATUS
 
 class Motion(Core):
@@ -18,6 +19,8 @@ class Motion(Core):
         coordinates: str = "xyz",
         servo_period: float = 0.001,
         kinematics: KinematicsModule | None = None,
+        planner: PlannerModule | None = None,
+        homing: HomingModule | None = None,
         **numbers: int,
     ) -> None: ...
     def __getitem__(self, name: str) -> Any: ...

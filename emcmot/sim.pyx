@@ -60,10 +60,12 @@ cdef class Motion(Core):
     cdef dict _by_name
     cdef int _serial
 
-    def __init__(self, coordinates="xyz", double servo_period=0.001, kinematics=None, **numbers):
+    def __init__(
+        self, coordinates="xyz", double servo_period=0.001, kinematics=None, planner=None, homing=None, **numbers
+    ):
         kinematics = kinematics or trivkins.create(coordinates)
         numbers.setdefault("num_joints", kinematics.joints + numbers.get("num_extrajoints", 0))
-        super().__init__(kinematics, servo_period, **numbers)
+        super().__init__(kinematics, servo_period, planner, homing, **numbers)
         self._by_name = {pin.name: pin for pin in self.pins}
         fill_status(&self.last_status, self.m)
         self.loopback = True

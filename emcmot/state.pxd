@@ -10,6 +10,7 @@ from libc.stdint cimport int8_t, int32_t, int64_t
 from emcmot._messages cimport EMCMOT_ERROR, MAX_AIO, MAX_AXES, MAX_DIO, MAX_JOINTS, MAX_SPINDLES
 from emcmot.free_planner cimport FreePlanner
 from emcmot.kins.kinematics cimport Kinematics
+from emcmot.tp.interface cimport TpInterface
 from emcmot.tp.tp cimport Tp, TpIo, TpStatus
 
 cdef enum:
@@ -183,6 +184,15 @@ ctypedef struct Spindle:
     double speed_out_rps_abs
     double speed_cmd_rps
 
+ctypedef struct Motion
+ctypedef struct HomingInterface:   # what motion asks of a homing module, in the servo thread
+    void (*cycle)(Motion* m) noexcept nogil                    # one period of all joints and of the home sequence
+    int (*home_joint)(Motion* m, int number) noexcept nogil    # begin; 0, or -1 refused with a report
+    void (*home_all)(Motion* m) noexcept nogil                 # begin with the first step of the sequence
+    int (*is_active)(Motion* m) noexcept nogil                 # is a joint homing, or the sequence between two of them?
+    void (*cancel)(Motion* m) noexcept nogil                   # stop; joints that were at it are not homed
+    void (*update_homed)(Motion* m) noexcept nogil             # Motion.all_homed, from the joints
+
 ctypedef struct Motion:
     double dt                # servo period, s
     double host_now          # host time, s; set by the owner before the command handler runs
@@ -195,7 +205,9 @@ ctypedef struct Motion:
     int num_aio
     int num_misc_error
     Kinematics* kins
-    Tp* tp
+    const HomingInterface* homing
+    const TpInterface* planner
+    Tp* tp               # the planner's own memory
     TpStatus tp_status
     Joint joint[MAX_JOINTS]
     Axis axis[MAX_AXES]

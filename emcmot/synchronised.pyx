@@ -4,7 +4,6 @@ indexers.
 
 from emcmot.spindle cimport spindles_at_speed
 from emcmot.state cimport Motion, Spindle
-from emcmot.tp.tp cimport tp_index_seen, tp_set_at_speed, tp_set_feed_inhibit, tp_spindle, tp_unlocked
 
 from emcmot.layout import same_size
 
@@ -20,7 +19,7 @@ cdef void watch_index(Motion* m) noexcept nogil:
         m.spindle[m.index_spindle].index_enable = 0
         m.index_spindle = -1
     elif m.index_spindle >= 0 and not m.spindle[wanted].index_enable:
-        tp_index_seen(m.tp)
+        m.planner.index_seen(m.tp)
         m.index_spindle = -1
     elif wanted >= 0:
         m.spindle[wanted].index_enable = 1
@@ -39,14 +38,14 @@ cdef void synchronised_cycle(Motion* m) noexcept nogil:
     cdef int n
     cdef int wanted = m.tp_status.wants_unlock
     for n in range(m.num_spindles):
-        tp_spindle(m.tp, n, m.spindle[n].revs, m.spindle[n].speed_in)
+        m.planner.spindle(m.tp, n, m.spindle[n].revs, m.spindle[n].speed_in)
     watch_index(m)
     turn_back(m)
-    tp_set_at_speed(m.tp, spindles_at_speed(m))
+    m.planner.set_at_speed(m.tp, spindles_at_speed(m))
     # joints that another geometry has moved away from their pose catch up before the next move begins
-    tp_set_feed_inhibit(m.tp, m.feed_inhibit or (m.chasing and m.tp_status.current_vel == 0.0))
+    m.planner.set_feed_inhibit(m.tp, m.feed_inhibit or (m.chasing and m.tp_status.current_vel == 0.0))
     for n in range(m.num_joints):
         if not m.joint[n].home.homing:
             m.joint[n].unlock = n == wanted
     if 0 <= wanted < m.num_joints:
-        tp_unlocked(m.tp, m.joint[wanted].is_unlocked)
+        m.planner.unlocked(m.tp, m.joint[wanted].is_unlocked)

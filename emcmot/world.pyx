@@ -9,7 +9,7 @@ from emcmot.joint cimport command_joint
 from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY, KINS_JOINTS, Kinematics
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
-from emcmot.tp.tp cimport TpInverse, tp_set_axis_limits, tp_set_joints
+from emcmot.tp.tp cimport TpInverse
 
 from emcmot.layout import same_size
 
@@ -380,9 +380,9 @@ cdef void tell_planner(Motion* m, const double* vel, const double* acc, const do
             continue
         axis_vel[i] = fmin(axis_vel[i], joint_vel[n]) if joint_vel[n] > 0.0 else axis_vel[i]
         axis_acc[i] = fmin(axis_acc[i], joint_acc[n]) if joint_acc[n] > 0.0 else axis_acc[i]
-    tp_set_joints(
+    m.planner.set_joints(
         m.tp, NULL if all_axes else <TpInverse>m.kins.inverse, m.kins, m.kins.joints, joint_vel, joint_acc, joint_jerk
     )
     for i in range(MAX_AXES):
         if axis_vel[i] > 0.0 and axis_acc[i] > 0.0:
-            tp_set_axis_limits(m.tp, i, axis_vel[i], axis_acc[i], jerk[i])
+            m.planner.set_axis_limits(m.tp, i, axis_vel[i], axis_acc[i], jerk[i])

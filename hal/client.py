@@ -61,6 +61,11 @@ class HostClient:
         names: list[str] = self._ask("loaded")
         return names
 
+    def provided(self) -> list[str]:
+        """What modules offer to those loaded after them: kinematics, planner, homing."""
+        names: list[str] = self._ask("provided") if self._connect() else []
+        return names
+
     def addf(self, funct: str, thread: str, position: int = -1) -> None:
         self._ask("addf", funct, thread, position)
 

@@ -44,6 +44,7 @@ class Server:
             "loadrt": self.host.load,
             "unloadrt": self.host.unload,
             "loaded": self.host.loaded,
+            "provided": self.host.provided,
             "addf": self.host.add_function,
             "delf": self.host.remove_function,
             "quit": self.quit,

@@ -12,6 +12,7 @@ import posix_ipc
 
 import nml
 from hal.session import find_hal_file
+from linuxcnc.motionmodules import HOMING, PLANNER
 from linuxcnc.options import Overrides
 from linuxcnc.programs import MODULES, SERVICES, Command, Programs
 from nml import clock, namespace
@@ -19,9 +20,6 @@ from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
 from nml.inifile import IniFile
 
-# Modules that other builds may replace; ours are built into motion and go by LinuxCNC's names
-PLANNER = ("TRAJ", "TPMOD", "tpmod", "-t")
-HOMING = ("EMCMOT", "HOMEMOD", "homemod", "-m")
 PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
 SYSTEM_PYTHON = Path("/usr/bin/python3")
@@ -54,8 +52,8 @@ class Configuration:
         self.programs = Programs(self.ini)
         self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
         self.ini.find("TRAJ", "COORDINATES")
-        self._require_built_in(*PLANNER, self.overrides.planner)
-        self._require_built_in(*HOMING, self.overrides.homing)
+        named = (PLANNER, self.overrides.planner), (HOMING, self.overrides.homing)
+        self.motion_modules = [part.module(self.ini, given) for part, given in named]
         self.nml_file = self._nml_file()
         self._hal_folders = self._existing(self.overrides.hal_folders)
         self.hal_files = self._hal_files()
@@ -76,15 +74,6 @@ class Configuration:
         if self.ini.find("DISPLAY", "DISPLAY") is None:
             raise ConfigError("[DISPLAY]DISPLAY is missing; name a display, e.g. linuxcncrsh", Place(str(self.path)))
         return self.programs.command("DISPLAY", "DISPLAY", "linuxcncrsh")
-
-    def _require_built_in(self, section: str, key: str, ours: str, option: str, given: str | None) -> None:
-        """Refuse a planner or homing module other than the one that motion has built in."""
-        name = given or self.ini.find(section, key, ours)
-        if name != ours:
-            where, place = (option, Place("<command line>")) if given else (f"[{section}]{key}", None)
-            raise ConfigError(
-                f"{where} {name}: this build has {ours} only, without parameters", place or self.ini.place(section, key)
-            )
 
     def _existing(self, folders: tuple[Path, ...]) -> list[Path]:
         for folder in folders:

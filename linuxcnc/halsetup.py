@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shlex
 from pathlib import Path
 
 from hal import twopass
 from hal.session import Quit, Session
-from linuxcnc.configuration import HalFile
+from linuxcnc.configuration import Configuration, HalFile
+from linuxcnc.motionmodules import MotionModule
 from nml.errors import Place, PyemcError
-from nml.inifile import IniFile
 
 
 class HalFileError(PyemcError):
@@ -30,11 +31,17 @@ class SetupSession(Session):
         raise HalFileError(f"{self.place}: {error}") from error
 
 
-def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -> None:
-    """Run [HAL]HALFILE in order, then [HAL]HALCMD, then start the threads; relative names start at the INI file."""
+def set_up(session: Session, configuration: Configuration) -> None:
+    """Load motion's planner and homing, run [HAL]HALFILE in order, then [HAL]HALCMD, and start the threads.
+
+    Relative names start at the INI file.
+    """
     before = Path.cwd()
-    os.chdir(folder)
+    ini, files = configuration.ini, configuration.hal_files
+    os.chdir(configuration.folder)
     try:
+        for module in configuration.motion_modules:
+            _load(session, module)
         if ini.find("HAL", "TWOPASS"):
             if not twopass.run(session, [(file.path, file.arguments) for file in files]) and not session.keep_going:
                 raise HalFileError("[HAL]TWOPASS: a HAL file failed")
@@ -47,6 +54,13 @@ def set_up(session: Session, ini: IniFile, folder: Path, files: list[HalFile]) -
         session.run_line("start")
     finally:
         os.chdir(before)
+
+
+def _load(session: Session, module: MotionModule) -> None:
+    session.place = module.place
+    session.run_line(shlex.join(["loadrt", *module.words]))
+    if module.offers not in session.host.provided():
+        raise HalFileError(f"{module.place}: {module.shown}: this module offers no {module.offers}")
 
 
 def _run_in_order(session: Session, files: list[HalFile]) -> None:

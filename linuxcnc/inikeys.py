@@ -193,7 +193,7 @@ KEYS: tuple[Key, ...] = (
         ("HEARTBEAT_TIMEOUT", REAL, TASK, "how long motion waits for a sign of life of task before it stops the machine", {"default": "0.1", "unit": "s", "minimum": 0.02, "maximum": 10.0}),
         ("COMM_WAIT", REAL, NOBODY, LINUXCNC_ONLY, {"unit": "s"}),
         ("SHMEM_KEY", INTEGER, NOBODY, LINUXCNC_ONLY, {}),
-        ("HOMEMOD", TEXT, LAUNCHER, "the homing module; homemod is the only one", {"default": "homemod"}),
+        ("HOMEMOD", TEXT, LAUNCHER, "the homing module: homemod, or one of your own by its name or file", {"default": "homemod"}),
     ),
     *_keys(
         "EMCIO",
@@ -283,7 +283,7 @@ KEYS: tuple[Key, ...] = (
         ("ARC_BLEND_FALLBACK_ENABLE", BOOLEAN, TASK, "parabolic blends where they are faster", {"default": "no"}),
         ("ARC_BLEND_OPTIMIZATION_DEPTH", INTEGER, TASK, "segments to look ahead", {"default": "50", "minimum": 1}),
         ("ARC_BLEND_RAMP_FREQ", REAL, TASK, "shortest ramps", {"default": "100", "unit": "Hz", "minimum": 0.0}),
-        ("TPMOD", TEXT, LAUNCHER, "the planner module; tpmod is the only one", {"default": "tpmod"}),
+        ("TPMOD", TEXT, LAUNCHER, "the planner module: tpmod, or one of your own by its name or file", {"default": "tpmod"}),
         ("POSITION_FILE", FILE, TASK, "file that keeps the joints' positions while the machine is off", {}),
         ("PLANNER_TYPE", INTEGER, TASK, "0: trapezoids of velocity, 1: limited jerk", {"default": "0", "minimum": 0, "maximum": 1}),
         ("MAX_LINEAR_JERK", REAL, TASK, "highest jerk of the path; 0: no limit", {"default": "0", "unit": "lu/s³", "minimum": 0.0}),

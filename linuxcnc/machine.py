@@ -78,7 +78,7 @@ class Machine:
         self.wait_until(self._component_ready("iocontrol"), "io")
         if configuration.halui is not None:
             self.wait_until(self._component_ready("halui"), "halui")
-        set_up(self._session, configuration.ini, configuration.folder, configuration.hal_files)
+        set_up(self._session, configuration)
         self._hal_is_set_up = True
         self._record_user_components()
         status = Channel(self._nml_file, "emcStatus", "xemc")

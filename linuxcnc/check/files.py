@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hal.session import find_hal_file
 from linuxcnc.check.base import Checked, finding, nearest
-from linuxcnc.configuration import HOMING, PLANNER
+from linuxcnc.motionmodules import HOMING, PLANNER
 from linuxcnc.programs import Programs
 from nml.check import contradictions
 from nml.config import NmlConfig
@@ -82,11 +82,12 @@ def programs(checked: Checked) -> Iterator[str]:
 
 
 def modules(checked: Checked) -> Iterator[str]:
-    """The planner and homing are those of this build."""
-    for section, key, ours, _ in (PLANNER, HOMING):
-        name = checked.ini.find(section, key, ours)
-        if name != ours:
-            yield finding(checked.place(section, key), f"[{section}]{key} = {name}: no such module", f"use {ours}")
+    """The planner and homing modules are there."""
+    for part in (PLANNER, HOMING):
+        try:
+            part.module(checked.ini)
+        except ConfigError as error:
+            yield str(error)
 
 
 def nml_file(checked: Checked) -> Iterator[str]:

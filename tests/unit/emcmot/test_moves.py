@@ -62,8 +62,27 @@ def test_an_arc_that_bulges_over_a_limit_is_refused() -> None:
     m.run_until_rest()
     assert arc(m, 90, 30, 90, 15, id=12) != 0
     assert m.errors() == ["Circular move on line 12 would exceed X's positive limit: 105.0000, limit 100.0000"]
+    m.send(C.ABORT)
+    m.run_until_rest()
     assert arc(m, 90, 30, 90, 15, turn=-1) == 0, "clockwise it bulges the other way"
     m.run_until_rest()
+    assert m.errors() == []
+
+
+def test_no_move_behind_a_refused_one_is_taken_until_an_abort() -> None:
+    m = mill("coord")
+    line(m, 5, id=1)
+    assert line(m, 900, id=2) != 0
+    assert line(m, 7, id=3) != 0
+    m.run_until_rest()
+    assert m["motion.coord-error"]
+    assert m.status.carte_pos_cmd.tran.x == 5.0
+    m.send(C.ABORT)
+    m.run_until_rest()
+    m.errors()
+    assert line(m, 7, id=4) == 0
+    m.run_until_rest()
+    assert m.status.carte_pos_cmd.tran.x == 7.0
     assert m.errors() == []
 
 

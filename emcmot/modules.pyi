@@ -1,0 +1,8 @@
+class PlannerModule:
+    name: str
+
+class HomingModule:
+    name: str
+
+PLANNER: PlannerModule
+HOMING: HomingModule
