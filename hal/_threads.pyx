@@ -106,7 +106,7 @@ cdef struct Call:
 
 cdef struct Calls:
     int count
-    Call call[0]
+    Call call[0]  # and `FAR_AHEAD` empty ones, which are fetched ahead like others
 
 cdef struct HalThread:
     hal_segment* segment
@@ -151,16 +151,26 @@ cdef void sleep_until(int64_t ns) noexcept nogil:
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL)
 
 
+cdef enum:
+    TICKS_SHIFT = 24
+
 cdef double ns_per_tick = 1.0
+cdef int64_t ns_of_many_ticks = 1 << TICKS_SHIFT
 
 
 cdef void measure_ticks() noexcept nogil:
     """How long a tick of the processor's counter is, against the system's clock over 2 ms."""
-    global ns_per_tick
+    global ns_per_tick, ns_of_many_ticks
     cdef int64_t begin_ns = now_ns(), begin = ticks(), end_ns
     usleep(2000)
     end_ns = now_ns()
     ns_per_tick = (end_ns - begin_ns) / <double>(ticks() - begin)
+    ns_of_many_ticks = <int64_t>(ns_per_tick * (1 << TICKS_SHIFT))
+
+
+cdef inline int32_t nanoseconds(int64_t count) noexcept nogil:
+    """Of so many ticks, in whole numbers: this is worked out for each function of each period."""
+    return <int32_t>(count * ns_of_many_ticks >> TICKS_SHIFT)
 
 
 cdef void* first_word(void** arg) noexcept nogil:
@@ -207,14 +217,12 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
     cdef int i
     for i in range(calls.count):
         call = &calls.call[i]
-        if i + FAR_AHEAD < calls.count:
-            prefetch(calls.call[i + FAR_AHEAD].arg)
-            prefetch(calls.call[i + FAR_AHEAD].time)
-        if i + AHEAD < calls.count:
-            prefetch(calls.call[i + AHEAD].first)
+        prefetch(call[FAR_AHEAD].arg)
+        prefetch(call[FAR_AHEAD].time)
+        prefetch(call[AHEAD].first)
         call.code(call.arg, thread.period_ns)
         after = ticks()
-        took = <int32_t>((after - before) * ns_per_tick)
+        took = nanoseconds(after - before)
         hal_at(call.time).s = took
         if after - before > call.longest or call.was_increased:
             keep_longest(call, took, after - before)
@@ -222,7 +230,7 @@ cdef void run_calls(HalThread* thread) noexcept nogil:
     if calls.count > 0:  # one function each period: has somebody set its tmax?
         call = &calls.call[thread.record.cycles % <uint64_t>calls.count]
         call.longest = <int64_t>(call.tmax.s / ns_per_tick)
-    took = <int32_t>((after - begin) * ns_per_tick)
+    took = nanoseconds(after - begin)
     hal_at(thread.time).s = took
     if took > hal_at(thread.tmax).s:
         hal_at(thread.tmax).s = took
@@ -297,7 +305,7 @@ cdef class NativeThread:
         self.thread = <HalThread*>calloc(1, sizeof(HalThread))
         if self.thread == NULL:
             raise MemoryError
-        self.thread.calls = <Calls*>calloc(1, sizeof(Calls))
+        self.thread.calls = <Calls*>calloc(1, sizeof(Calls) + FAR_AHEAD * sizeof(Call))
 
     def __init__(self, Segment segment, Thread record, size_t time, size_t tmax, size_t beat):
         self.segment, self.record = segment, record
@@ -310,7 +318,7 @@ cdef class NativeThread:
 
         False: a function of the old list has not returned for 2 s, so what it uses must not be freed.
         """
-        cdef Calls* fresh = <Calls*>calloc(1, sizeof(Calls) + len(calls) * sizeof(Call))
+        cdef Calls* fresh = <Calls*>calloc(1, sizeof(Calls) + (len(calls) + FAR_AHEAD) * sizeof(Call))
         cdef Calls* old
         cdef int i
         cdef size_t code, arg, time, tmax, increased
