@@ -8,7 +8,7 @@ import { operator } from "../core/machine.js";
 
 /** @typedef {import("../core/app.js").App} App */
 
-const ROW = 24; // px, as in panels.css
+const ROW = 24; // px, as in programs.css
 const CHECK_PAUSE_MS = 600;
 const CHECK_LIMIT = 2_000_000; // characters; larger texts are checked when they are saved and opened
 
