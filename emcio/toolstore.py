@@ -12,7 +12,7 @@ import struct
 from collections.abc import Iterable
 
 from emcio.tooltable import Tool, ToolFile
-from nml.emc.tooltable import CANON_POCKETS_MAX, EMC_TOOL_TABLE
+from nml.emc.tooltable import CANON_POCKETS_MAX, EMC_TOOL_TABLE, REMARK_LENGTH
 
 NO_TOOL = NO_POCKET = -1
 
@@ -126,7 +126,7 @@ class ToolStore:
         """Write the table into the message of the ``toolTable`` buffer."""
         message.random = int(self.random)
         message.last_index = self.last_index
-        base = EMC_TOOL_TABLE.field("tools")[1]
+        base, remarks = (EMC_TOOL_TABLE.field(name)[1] for name in ("tools", "remarks"))
         for index, tool in enumerate(self.entries):
             _ENTRY.pack_into(
                 message.data,
@@ -139,6 +139,9 @@ class ToolStore:
                 tool.backangle,
                 tool.orientation,
             )
+            text = tool.remark.encode()[: REMARK_LENGTH - 1].decode(errors="ignore").encode()
+            _REMARK.pack_into(message.data, remarks + index * _REMARK.size, text)
 
 
 _ENTRY = struct.Struct("<ii12di4x")
+_REMARK = struct.Struct(f"{REMARK_LENGTH}s")

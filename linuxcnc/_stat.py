@@ -276,10 +276,7 @@ class stat:
         return self._tool_table
 
     def toolinfo(self, toolno: int) -> dict[str, Any]:
-        """What the tool table has about a tool: toolno, pocketno, offsets, diameter, angles, orientation.
-
-        The key comment is empty: the message of the table does not carry comments.
-        """
+        """What the tool table has about a tool: toolno, pocketno, offsets, diameter, angles, orientation, comment."""
         self._renew_tools()
         if toolno not in self._tools_by_number:
             raise error(f"toolinfo({toolno}): there is no such tool in the tool table")
@@ -326,8 +323,8 @@ def _tools_by_number(message: EMC_TOOL_TABLE) -> dict[int, dict[str, Any]]:
             "backangle": one.backangle,
             "orientation": one.orientation,
             **dict(zip(OFFSET_NAMES, pose_tuple(one.offset), strict=True)),
-            "comment": "",
+            "comment": remark.text,
         }
-        for one in islice(message.tools, 1, message.last_index + 1)
+        for one, remark in islice(zip(message.tools, message.remarks, strict=True), 1, message.last_index + 1)
         if one.toolno > 0
     }

@@ -8,9 +8,16 @@ entries follow each other as the file lists them, and ``pocketno`` is what the f
 from __future__ import annotations
 
 from nml.emc.structs import CANON_TOOL_TABLE
-from nml.message import Status, integer, struct
+from nml.message import Status, Struct, char, integer, struct
 
 CANON_POCKETS_MAX = 1001
+REMARK_LENGTH = 40
+
+
+class TOOL_REMARK(Struct):
+    """What stands behind the semicolon of a tool's line."""
+
+    text = char(REMARK_LENGTH, cut=True)
 
 
 class EMC_TOOL_TABLE(Status, type_id=3010):
@@ -19,3 +26,4 @@ class EMC_TOOL_TABLE(Status, type_id=3010):
     random = integer(doc="1: random changer")
     last_index = integer(doc="greatest index in use")
     tools = struct(CANON_TOOL_TABLE, CANON_POCKETS_MAX, doc="0: spindle")
+    remarks = struct(TOOL_REMARK, CANON_POCKETS_MAX, doc="of the same entries")

@@ -121,3 +121,12 @@ def test_the_published_message_tells_what_the_store_holds():
     assert (message.random, message.last_index) == (1, 17)
     assert (entry.toolno, entry.pocketno, entry.diameter) == (1, 17, 1.0)
     assert message.tools[16].toolno == -1
+
+
+def test_the_message_has_each_tool_with_its_remark():
+    store = ToolStore(random=False)
+    store.load([Tool(toolno=5, diameter=3.0, remark="long drill"), Tool(toolno=6, remark="é" * 30)])
+    message = EMC_TOOL_TABLE()
+    store.fill(message)
+    assert (message.tools[1].toolno, message.tools[1].diameter, message.remarks[1].text) == (5, 3.0, "long drill")
+    assert message.remarks[2].text == "é" * 19  # what fits, and no half letters

@@ -77,10 +77,12 @@ def test_one_tool_is_found_by_its_number(task):
     table = EMC_TOOL_TABLE(last_index=1)
     table.tools[1].toolno, table.tools[1].pocketno, table.tools[1].diameter = 5, 12, 3.5
     table.tools[1].offset.tran.z = 12.5
+    table.remarks[1].text = "long drill"
     with Channel(None, "toolTable", "tool") as channel:
         channel.write(table)
         info = linuxcnc.stat().toolinfo(5)
         assert (info["toolno"], info["pocketno"], info["zoffset"], info["diameter"]) == (5, 12, 12.5, 3.5)
+        assert info["comment"] == "long drill"
         with pytest.raises(linuxcnc.error, match="toolinfo\\(6\\)"):
             linuxcnc.stat().toolinfo(6)
 
