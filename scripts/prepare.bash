@@ -1,13 +1,22 @@
 # Set-up shared by the commands in this folder: one virtual environment with the native core built in place.
 #
 # `prepare EXTRA` makes `.venv` in the checkout when it is missing, installs what pyproject.toml asks for when that
-# changed, and compiles the native core when its sources changed. Safe to run twice at once: the second waits.
+# changed, and compiles the native core when its sources changed. Safe to run twice at once: the second waits. After an
+# interruption the next run does again what was not finished.
 
 ROOT=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 VENV=$ROOT/.venv
 
 say() { printf 'pyemc: %s\n' "$*" >&2; }
 give_up() { say "$*"; exit 1; }
+
+undo() { :; } # what an interruption must take back
+interrupted() {
+    trap - INT TERM
+    undo
+    say "interrupted; the next start does this again"
+    exit "$1"
+}
 
 # The newest Python that is new enough, or an explanation of what to install.
 find_python() {
@@ -72,34 +81,47 @@ PYTHON
 }
 
 build_native() {
-    local files stamp log
+    local files stamp log unfinished force=()
     mapfile -t files < <(native_sources)
     stamp=$VENV/.native-$(stamp_of "${files[@]}")
     [ -e "$stamp" ] && return
     log=$VENV/native-build.log
+    unfinished=$VENV/.native-unfinished
+    if [ -e "$unfinished" ]; then # half-written files of a build that was cut off look finished
+        force=(--force)
+        export CYTHON_FORCE_REGEN=1
+    fi
+    touch "$unfinished"
     say "compiling the native core; this takes a minute or two and is done once (log: $log)"
     if ! (cd "$ROOT" && PYEMC_BUILD_JOBS=$(nproc) "$VENV/bin/python" setup.py build_ext --inplace --parallel "$(nproc)" \
-        >"$log" 2>&1); then
+        "${force[@]}" >"$log" 2>&1); then
+        rm -f "$unfinished"
         tail -n 20 "$log" >&2
         give_up "the native core does not compile; the whole log is in $log"
     fi
     rm -f "$VENV"/.native-*
     touch "$stamp"
+    unset CYTHON_FORCE_REGEN
 }
 
 prepare() {
     local extra=$1 python lock
+    trap 'interrupted 130' INT
+    trap 'interrupted 143' TERM
     exec {lock}<"$ROOT"
     flock "$lock"
     if [ ! -x "$VENV/bin/python" ] || ! "$VENV/bin/python" -c '' 2>/dev/null; then
         python=$(find_python) || exit 1
         check_build_tools "$python"
         say "making the virtual environment $VENV with $("$python" --version)"
+        undo() { rm -rf "$VENV"; }
         "$python" -m venv --clear "$VENV" ||
             give_up "no virtual environment could be made; install with: sudo apt install python3-venv"
+        undo() { :; }
     fi
     check_build_tools "$VENV/bin/python"
     install_requirements "$extra"
     build_native
     exec {lock}<&-
+    trap - INT TERM
 }
