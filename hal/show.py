@@ -11,11 +11,20 @@ from hal.values import PARAM_DIR_NAMES, PIN_ARROWS, PIN_DIR_NAMES, SIGNAL_ARROWS
 
 Lines = Iterator[str]
 VALUE_WIDTH = 20
+TYPED = ("pin", "sig", "signal", "param", "parameter")  # what `list` and `show` limit to a data type
 
 
 def matches(name: str, patterns: list[str]) -> bool:
     """Whether a name begins with one of the patterns or fits one as a shell glob; all do where there are none."""
     return not patterns or any(name.startswith(pattern) or fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def of_type(patterns: list[str]) -> tuple[int | None, list[str]]:
+    """The data type that patterns begin with, ``-tfloat`` or ``-t float``, and the rest; None where there is none such."""
+    if not patterns or not patterns[0].startswith("-t"):
+        return None, patterns
+    word, rest = (patterns[0][2:], patterns[1:]) if len(patterns[0]) > 2 else ("".join(patterns[1:2]), patterns[2:])
+    return TYPES.get(word), rest
 
 
 def padded(item: Item | Signal) -> str:
@@ -74,8 +83,9 @@ class Show:
     def _items(self, title: str, kind: int, directions: dict[int, str], patterns: list[str]) -> Lines:
         yield from self._title(title, f"{'Owner':8}{'Type':6}{'Dir':5}{'Value':>{VALUE_WIDTH}}  Name")
         owners = self._owners()
+        wanted, patterns = of_type(patterns)
         for item in self.segment.items(kind):
-            if not matches(item.shown, patterns):
+            if not matches(item.shown, patterns) or wanted not in (None, item.type):
                 continue
             signal = item.signal
             link = f" {PIN_ARROWS[item.dir]} {signal.name}" if signal else ""
@@ -100,8 +110,9 @@ class Show:
 
     def signals(self, patterns: list[str]) -> Lines:
         yield from self._title("Signals:", f"{'Type':7}{'Value':>{VALUE_WIDTH}}  Name     (linked to)")
+        wanted, patterns = of_type(patterns)
         for signal in self.segment.signals():
-            if not matches(signal.name, patterns):
+            if not matches(signal.name, patterns) or wanted not in (None, signal.type):
                 continue
             links = [f"{SIGNAL_ARROWS[pin.dir]} {pin.shown}" for pin in signal.pins()]
             type_ = TYPE_NAMES[signal.type]
@@ -146,7 +157,7 @@ class Show:
 
 
 def list_names(hal: Hal, what: str, patterns: list[str]) -> list[str] | None:
-    """Names of items of a type, as ``list`` prints them; ``-tTYPE`` first limits the data type. None: unknown."""
+    """Names of items, as ``list`` prints them; None: there are no items of that kind."""
     segment = hal.segment
     tables: dict[str, Callable[[], list]] = {
         "comp": segment.comps,
@@ -161,10 +172,7 @@ def list_names(hal: Hal, what: str, patterns: list[str]) -> list[str] | None:
     }
     if what not in tables:
         return None
-    wanted = None
-    if patterns and patterns[0].startswith("-t"):
-        wanted = TYPES.get(patterns[0][2:])
-        patterns = patterns[1:]
+    wanted, patterns = of_type(patterns) if what in TYPED else (None, patterns)
     records = [r for r in tables[what]() if wanted is None or r.type == wanted]
     names = [r.shown if isinstance(r, Item) else r.name for r in records]
     return [name for name in names if matches(name, patterns)]

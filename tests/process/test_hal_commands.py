@@ -57,6 +57,17 @@ def test_script_mode_prints_items_in_single_lines(session: None) -> None:
     assert halcmd("-s", "show", "thread").endswith("siggen.0.update\n\n")
 
 
+@pytest.mark.parametrize("how", ["-tbit", "-t bit"])
+def test_list_and_show_take_a_data_type_before_their_patterns(session: None, how: str) -> None:
+    assert halcmd("list", "pin", *how.split(), "and2*") == "and2.0.in0 and2.0.in1 and2.0.out \n"
+    lines = halcmd("-s", "show", "pin", *how.split(), "and2*", "siggen*").splitlines()
+    names = ["and2.0.in0", "and2.0.in1", "and2.0.out", "siggen.0.clock", "siggen.0.reset"]
+    assert [line.split()[-1] for line in lines if line] == names
+    assert halcmd("list", "sig", *how.split()) == "\n"
+    assert "tmax-increased" in halcmd("list", "param", *how.split())
+    assert halcmd("list", "pin", how.replace("bit", "BIT"), "and2*").split()[-1] == "and2.0.time"
+
+
 def test_what_is_saved_makes_the_same_session_again(session: None, tmp_path: Path) -> None:
     saved = tmp_path / "saved.hal"
     halcmd("setp", "siggen.0.frequency", "2.5")
