@@ -480,7 +480,7 @@ command(MotCommand_SET_AXIS_LOCKING_JOINT, AXIS, set_parameters, "The joint that
 command(MotCommand_SET_SPINDLE_PARAMS, SPINDLE, set_parameters, "Speed limits in both directions.")
 command(
     MotCommand_SET_HEARTBEAT_TIMEOUT, 0, set_parameters,
-    "Host seconds without a command after which motion stops; 0: never.",
+    "Host seconds without a sign of life of task after which motion stops; 0: never.",
 )
 command(MotCommand_HEARTBEAT, 0, nothing, "Task is alive.")
 command(MotCommand_SET_UNITS, 0, set_parameters, "Millimetres per lu, for the feed pins.")

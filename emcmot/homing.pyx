@@ -235,9 +235,7 @@ cdef int state_index_search_wait(Motion* m, Joint* joint, int number) noexcept n
     if not joint.home.index_armed:  # take_index has seen it
         joint.free.enabled = 0
         return enter(joint, HOME_SET_INDEX_POSITION)
-    if moved_in_vain(m, joint, number):
-        return 1
-    return 0
+    return moved_in_vain(m, joint, number)
 
 
 cdef void take_index(Joint* joint) noexcept nogil:
