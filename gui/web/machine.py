@@ -27,7 +27,7 @@ from nml import clock
 
 LOOK = 0.25  # s between looks whether the server ends
 FAST = 0.004  # s between looks at the status while an order or a jog is under way
-BRISK = 0.02  # s between statuses that are passed on meanwhile
+BRISK = 0.02  # s between statuses that are passed on meanwhile, and from a status to the one that follows an order
 LONG_EVERY = 4  # statuses from one with the long arrays of inputs and outputs to the next
 SERIALS_KEPT = 512
 SILENT_AFTER = 1.5  # s without a new status
@@ -102,8 +102,11 @@ class Machine:
     # --- status ----------------------------------------------------------------------------------------------------
 
     def _follow(self) -> None:
-        """Thread: pass on each status, at most one a cycle; while an order is under way look oftener."""
-        status, shown, heard, ends = self._status, float("-inf"), clock.host_now(), (0, 0)
+        """Thread: pass on each status, at most one a cycle, but one after an order of anybody soon.
+
+        While an order of ours is under way look oftener.
+        """
+        status, shown, heard, told = self._status, float("-inf"), clock.host_now(), (0, 0)
         looks = -1
         while not self._over.is_set():
             try:
@@ -119,9 +122,10 @@ class Machine:
                     self._tell({"machine": "task does not answer"}, None)
                 continue
             heard = now
-            before, ends = ends, (status.echo_serial_number, status.state)
-            if now - shown >= self._period or (self._hurry.is_set() and ends != before):
-                shown = now
+            ends = (status.echo_serial_number, status.state)
+            soonest = 0.0 if self._hurry.is_set() else BRISK
+            if now - shown >= (self._period if ends == told else soonest):
+                shown, told = now, ends
                 looks += 1
                 self._tell({"machine": "ok", **readout.read(status, looks % LONG_EVERY == 0)}, ends)
             else:
@@ -144,7 +148,7 @@ class Machine:
         if self._hurry.is_set():
             self._over.wait(FAST)
         elif rest > 0.0:
-            self._hurry.wait(rest)
+            self._hurry.wait(min(rest, BRISK))
 
     def _tell(self, values: dict[str, Any] | None, ends: tuple[int, int] | None) -> None:
         if not self._over.is_set():
