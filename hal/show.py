@@ -20,7 +20,7 @@ def matches(name: str, patterns: list[str]) -> bool:
 
 
 def of_type(patterns: list[str]) -> tuple[int | None, list[str]]:
-    """The data type that patterns begin with, ``-tfloat`` or ``-t float``, and the rest; None where there is none such."""
+    """The data type that patterns begin with, ``-tfloat`` or ``-t float``, and the rest; None: any or unknown."""
     if not patterns or not patterns[0].startswith("-t"):
         return None, patterns
     word, rest = (patterns[0][2:], patterns[1:]) if len(patterns[0]) > 2 else ("".join(patterns[1:2]), patterns[2:])
