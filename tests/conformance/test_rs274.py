@@ -28,7 +28,7 @@ def test_a_program_prints_the_expected_canonical_calls(name: str, tmp_path: Path
     case = json.loads((folder / "case.json").read_text())
     environment = dict(os.environ, PYTHONPATH=str(ROOT))
     command = [sys.executable, "-m", "rs274ngc", *case["argv"][1:]]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
     output = without_first_field(done.stdout) if case["blank_first_field"] else done.stdout
     if case["replace_minus_zero"]:
         output = output.replace("-0.0000", "0.0000")

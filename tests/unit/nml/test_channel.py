@@ -209,7 +209,7 @@ def test_closing_ends_a_wait_in_another_thread(config: NmlConfig):
     while not reader.raw.sleepers:
         pass
     reader.close()
-    thread.join(timeout=10.0)
+    thread.join(timeout=60.0)
     assert results == [False]
 
 
