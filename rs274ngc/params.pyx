@@ -65,6 +65,8 @@ cdef double get_named(State s, str name, int at) except? -1.0e300:
     except InterpError:
         s.error_at = at
         raise
+    if value is not None and name.startswith("_ini["):
+        s.globals[name] = value     # the file does not change, and lists of names show what was asked for
     if value is None and name.startswith("_"):
         value = s.canon.get_external_parameter(name)
     if value is None:

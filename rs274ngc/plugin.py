@@ -111,10 +111,13 @@ class Plugin:
         return float(value)
 
     def _guarded(self, module: str, name: str, call: Callable[[], Any]) -> Any:
+        plugin_canon.write_out(self.interp.canon)
         try:
             return call()
         except Exception as error:
             raise InterpError(f"Python exception in {module}.{name}: {told(error)}") from error
+        finally:
+            plugin_canon.write_out(self.interp.canon)
 
     def _judge(self, module: str, name: str, value: Any) -> bool:
         """True: the machine is to come to rest, and the function goes on. An O-word's number is its return value."""

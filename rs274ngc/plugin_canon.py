@@ -5,6 +5,7 @@ Names in capitals are the methods of ``canon.Canon``; the few whose arguments di
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -13,6 +14,7 @@ from typing import Any
 
 from rs274ngc import canon as canonical
 from rs274ngc.canon import AXES, Canon
+from rs274ngc.printer import PrintCanon
 
 _current: list[Canon] = []
 
@@ -34,11 +36,22 @@ def current() -> Canon:
     return _current[-1]
 
 
+def write_out(canon: Canon) -> None:
+    """What Python and a canon have printed so far leaves both, in the order in which it was printed."""
+    sys.stdout.flush()
+    if isinstance(canon, PrintCanon):
+        canon.flush()
+
+
 def calling(name: str) -> Any:
     """A function that calls the canon's method of this name."""
 
     def function(*arguments: Any) -> Any:
-        return getattr(current(), name)(*arguments)
+        canon = current()
+        write_out(canon)
+        result = getattr(canon, name)(*arguments)
+        write_out(canon)
+        return result
 
     function.__name__ = name.upper()
     return function

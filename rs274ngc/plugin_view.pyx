@@ -6,9 +6,18 @@ A name is one row of ``READ`` (what it is) and, where functions may set it, of `
 from nml.errors import InterpError
 from rs274ngc.canon import AXES
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named
-from rs274ngc.plugin_interpreter import INTERP_ERROR, INTERP_OK, InterpreterException
-from rs274ngc.remapping import view
-from rs274ngc.state cimport PARAMETERS, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, State
+from rs274ngc.plugin_interpreter import (
+    INTERP_ERROR,
+    INTERP_OK,
+    INVERSE_TIME,
+    UNITS_PER_MINUTE,
+    UNITS_PER_REVOLUTION,
+    InterpreterException,
+)
+from rs274ngc.plugin_canon import write_out
+from rs274ngc.predefined import PREDEFINED
+from rs274ngc.remapping import remap_level, view
+from rs274ngc.state cimport PARAMETERS, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, Frame, State
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 
@@ -38,8 +47,56 @@ class Parameters:
             raise IndexError(f"no parameter #{key}")
 
     def __call__(self):
+        return sorted({*self.globals(), *self.locals()})
+
+    def locals(self):
+        """Names of the parameters of this level alone."""
         cdef State s = self._state
-        return sorted({*s.globals, *s.frame.named})
+        return sorted(s.frame.named) if len(s.frames) > 1 else []
+
+    def globals(self):
+        """All other names: the predefined ones, and those of the main program."""
+        cdef State s = self._state
+        cdef Frame main = s.frames[0]
+        return sorted({*PREDEFINED, *s.globals, *main.named})
+
+
+class NamedValue:
+    """One named parameter of a level: ``key()``, and ``data()`` with its ``value`` and ``attr``."""
+
+    attr = 0        # neither global nor read only
+
+    def __init__(self, name, double value):
+        self._name, self.value = name, value
+
+    def key(self):
+        return self._name
+
+    def data(self):
+        return self
+
+
+class Context:
+    """``self.sub_context[level]``: a level of calls, 0 the main program."""
+
+    def __init__(self, Frame frame):
+        self.subName, self.filename, self.position, self.sequence_number = frame.sub, frame.file, frame.position, frame.line
+        self.named_params = [NamedValue(name, value) for name, value in sorted(frame.named.items())]
+
+
+class Contexts:
+    """``self.sub_context``: the levels of calls."""
+
+    def __init__(self, State s):
+        self._state = s
+
+    def __getitem__(self, int level):
+        if not 0 <= level < len(self):
+            raise IndexError(f"there is no level {level} of calls")
+        return Context(self._state.frames[level])
+
+    def __len__(self):
+        return len(self._state.frames)
 
 
 class Levels:
@@ -79,13 +136,25 @@ def axis_value(name, State s):
     return None
 
 
+def rotation(State s):
+    """Rotation of the coordinate system in degrees."""
+    return s.rotation
+
+
+def setting(State s, section, key):
+    """A whole number of the INI file, 0 where it does not stand there."""
+    return s.ini.integer(section, key, 0) if s.ini is not None else 0
+
+
+DEBUG_UNCONDITIONAL = 0x40000000    # the bit of messages that no debug mask suppresses
+FEED_MODES = {940: UNITS_PER_MINUTE, 930: INVERSE_TIME, 950: UNITS_PER_REVOLUTION}
 READ = {
-    "remap_level": lambda s: len(s.remap_stack),
+    "remap_level": remap_level,
     "call_level": lambda s: len(s.frames) - 1,
     "return_value": lambda s: s.return_value,
     "value_returned": lambda s: int(s.value_returned),
     "feed_rate": lambda s: s.feed,
-    "feed_mode": lambda s: s.feed_mode // 10,
+    "feed_mode": lambda s: FEED_MODES[s.feed_mode],
     "motion_mode": lambda s: s.motion,
     "plane": lambda s: s.plane,
     "length_units": lambda s: s.units,
@@ -100,9 +169,20 @@ READ = {
     "current_pocket": lambda s: s.tool_index,
     "selected_tool": lambda s: s.selected_tool,
     "selected_pocket": lambda s: s.selected_index,
-    "mist": lambda s: int(s.mist),
-    "flood": lambda s: int(s.flood),
-    "feed_override": lambda s: int(s.feed_override),
+    "mist": lambda s: bool(s.mist),
+    "flood": lambda s: bool(s.flood),
+    "feed_override": lambda s: bool(s.feed_override),
+    "random_toolchanger": lambda s: int(s.random_toolchanger),
+    "tool_change_at_g30": lambda s: int(s.change_at_g30),
+    "tool_change_quill_up": lambda s: int(s.change_with_quill_up),
+    "tool_change_with_spindle_on": lambda s: int(s.change_with_spindle_on),
+    "active_spindle": lambda s: s.active_spindle,
+    "cutter_comp_orientation": lambda s: s.comp_orientation,
+    "cutter_comp_firstmove": lambda s: bool(s.comp_first),
+    "arc_not_allowed": lambda s: bool(s.arc_not_allowed),
+    "percent_flag": lambda s: bool(s.percent),
+    "traverse_rate": lambda s: 0.0,
+    "rotation_xy": lambda s: rotation(s),
     "adaptive_feed": lambda s: int(s.adaptive_feed),
     "feed_hold": lambda s: int(s.feed_hold),
     "num_spindles": lambda s: s.spindles,
@@ -111,16 +191,16 @@ READ = {
     "linetext": lambda s: s.interp.block_text,
     "blocktext": lambda s: s.interp.block_text,
     "feature_set": lambda s: s.features,
-    "debugmask": lambda s: 0,
-    "loggingLevel": lambda s: 0,
+    "debugmask": lambda s: DEBUG_UNCONDITIONAL | setting(s, "EMC", "DEBUG"),
+    "loggingLevel": lambda s: setting(s, "RS274NGC", "LOG_LEVEL"),
     "task": lambda s: int(s.canon.is_task),
     "active_g_codes": lambda s: s.interp.active_g_codes(),
     "active_m_codes": lambda s: s.interp.active_m_codes(),
     "active_settings": lambda s: s.interp.active_settings(),
     "stack_index": lambda s: 0,
-    "input_flag": lambda s: int(bool(s.waiting & WAIT_INPUT)),
-    "probe_flag": lambda s: int(bool(s.waiting & WAIT_PROBE)),
-    "toolchange_flag": lambda s: int(bool(s.waiting & WAIT_TOOL)),
+    "input_flag": lambda s: bool(s.waiting & WAIT_INPUT),
+    "probe_flag": lambda s: bool(s.waiting & WAIT_PROBE),
+    "toolchange_flag": lambda s: bool(s.waiting & WAIT_TOOL),
 }
 """What can be read."""
 
@@ -145,6 +225,7 @@ class InterpView:
         own = self.__dict__
         own["_interp"], own["_state"] = interp, s
         own["params"], own["blocks"], own["speed"] = Parameters(s), Levels(s), Spindles(s)
+        own["sub_context"] = Contexts(s)
 
     def __getattr__(self, name):
         cdef State s = self.__dict__["_state"]
@@ -170,10 +251,13 @@ class InterpView:
 
     def execute(self, text, line_number=0):
         """Run a line of G-code, subroutines included; InterpreterException when it is wrong."""
+        write_out(self._state.canon)
         try:
             self._interp.execute_inner(text)
         except InterpError as error:
             raise InterpreterException(error.message, line_number, text) from error
+        finally:
+            write_out(self._state.canon)
         return INTERP_OK
 
     def set_errormsg(self, text):

@@ -60,7 +60,7 @@ ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
     ("_selected_tool", "number of the selected tool, -1: none", lambda s: s.selected_tool),
     ("_selected_pocket", "pocket of the selected tool, -1: none", lambda s: s.pocket_of(s.selected_index)),
     ("_call_level", "depth of subroutine calls", lambda s: len(s.frames) - 1),
-    ("_remap_level", "depth of remapped codes", lambda s: len(s.remap_stack)),
+    ("_remap_level", "depth of remapped codes", lambda s: sum(not pending.sub for pending in s.remap_stack)),
     ("_value", "value that the last subroutine returned", lambda s: s.return_value),
     ("_value_returned", "1 when the last subroutine returned a value", lambda s: s.value_returned),
     ("_task", "1 in the machine's task, 0 in a preview", lambda s: s.canon.is_task),

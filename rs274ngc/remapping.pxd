@@ -1,7 +1,7 @@
 """C face of the remapped codes: see remapping.pyx."""
 
 from rs274ngc.block cimport Block
-from rs274ngc.state cimport State
+from rs274ngc.state cimport Frame, State
 
 
 cdef class Pending:
@@ -14,6 +14,9 @@ cdef class Pending:
     cdef readonly dict words
     cdef public object steps                # generator: FINISH to let the machine come to rest, BODY to run the procedure
     cdef public bint builtin_used
+    cdef readonly str sub                   # name of a Python O-word subroutine, empty for a remapped code
+    cdef readonly list arguments            # what it was called with
+    cdef Frame scope                        # the level that its code runs on
 
 cdef int take_over(State s, Block* b, int step) except -1
 cdef object open_pending(State s, Block* b, remap, dict words)

@@ -73,6 +73,7 @@ cdef object open_pending(State s, Block* b, remap, dict words):
     pending.line = s.line
     pending.remap = remap
     pending.words = words
+    pending.sub, pending.arguments = "", []
     s.remap_stack.append(pending)
     return pending
 
@@ -130,6 +131,9 @@ def begin_python_sub(State s, str name, list arguments):
     cdef Pending pending
     memset(&b, 0, sizeof(b))
     pending = open_pending(s, &b, None, {})
+    pending.sub, pending.arguments = name, arguments
+    pending.scope = Frame()
+    pending.scope.sub, pending.scope.file = name, s.frame.file
     s.return_value, s.value_returned = 0.0, False
     pending.steps = s.plugin.steps("oword", name, arguments, {})
     s.resume = pending
@@ -140,7 +144,7 @@ def go_on(State s):
     cdef Pending pending = s.resume
     s.resume = None
     s.block.steps = 0
-    what = next(pending.steps, None)
+    what = next_step(s, pending)
     if what == FINISH:
         s.resume = pending
         return FINISH
@@ -151,6 +155,21 @@ def go_on(State s):
         memcpy(s.raw, <const char*>pending.raw, s.raw_size + 1)
         s.line = pending.line
     return OK
+
+
+cdef object next_step(State s, Pending pending):
+    """What the generator yields next; a Python O-word subroutine runs on a level of its own, like any subroutine."""
+    if pending.scope is None:
+        return next(pending.steps, None)
+    caller = s.frame
+    levels = len(s.frames)
+    s.frames.append(pending.scope)
+    s.frame = pending.scope
+    try:
+        return next(pending.steps, None)
+    finally:
+        del s.frames[levels:]
+        s.frame = caller
 
 
 class BlockView:
@@ -171,8 +190,12 @@ cdef object block_view(State s, Pending pending):
     for letter in "thl":
         word = LETTERS[letter]
         values[f"{letter}_number"] = <int>b.value[word] if has(b, word) else -1
-    values["g_modes"] = [b.g[k] for k in range(G_GROUPS)]
-    values["m_modes"] = [b.m[k] for k in range(M_GROUPS)]
+    sub = pending is not None and bool(pending.sub)
+    values["g_modes"] = [-1 if sub else b.g[k] for k in range(G_GROUPS)]
+    values["m_modes"] = [-1 if sub else b.m[k] for k in range(M_GROUPS)]
+    values["o_name"] = pending.sub if sub else ""
+    values["params"] = list(pending.arguments) if sub else []
+    values["param_cnt"] = len(values["params"])
     values["motion_to_be"] = b.motion
     values["dollar_number"] = b.value[W_DOLLAR] if has(b, W_DOLLAR) else 0.0
     raw = (pending.raw if pending is not None else s.raw[:s.raw_size]).decode("utf-8", "replace")
@@ -184,6 +207,22 @@ cdef object block_view(State s, Pending pending):
     return BlockView(values)
 
 
+def remap_level(State s):
+    """How many remapped codes are under way inside one another."""
+    return sum(1 for pending in s.remap_stack if not pending.sub)
+
+
 def view(State s, int level):
-    """``self.blocks[level]``: 0 is the line in work, 1 the one whose remapped code was begun first."""
-    return block_view(s, s.remap_stack[level - 1] if 0 < level <= len(s.remap_stack) else None)
+    """``self.blocks[level]``: 0 is the line in work, 1 the one whose remapped code was begun first.
+
+    While a Python O-word subroutine runs, the line that called it is the one of the present remap level.
+    """
+    cdef Pending shown = None, innermost = None
+    for innermost in s.remap_stack:
+        pass
+    remaps = [pending for pending in s.remap_stack if not pending.sub]
+    if innermost is not None and innermost.sub and level == len(remaps):
+        shown = innermost
+    elif 0 < level <= len(remaps):
+        shown = remaps[level - 1]
+    return block_view(s, shown)

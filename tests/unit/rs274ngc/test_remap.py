@@ -1,5 +1,9 @@
 """Remapped codes: what REMAP lines may say, NGC procedures, Python functions, and what they see of the interpreter."""
 
+import os
+import re
+import subprocess
+import sys
 import textwrap
 
 import pytest
@@ -9,6 +13,7 @@ from nml.inifile import IniFile
 from rs274ngc import tooltable
 from rs274ngc.interp import INTERP_EXECUTE_FINISH, Interpreter
 from rs274ngc.remap import parse
+from tests.support.machine import ROOT
 from tests.unit.rs274ngc.conftest import Recorder
 
 
@@ -200,3 +205,61 @@ def test_a_subroutine_file_that_was_edited_between_two_calls_is_read_anew(machin
     (tmp_path / "part.ngc").write_text(f"{edit}o<part> sub\n{edit}(msg,second and more)\no<part> endsub\nm2\n")
     typed(interp, "o<part> call", "o<part> call")
     assert messages(canon) == ["first", "second and more", "second and more"]
+
+
+def test_a_python_subroutine_has_a_level_of_its_own_and_sees_what_it_was_called_with(machine):
+    interp, canon = machine(
+        oword="""
+        def look(self, *args):
+            here = self.blocks[self.remap_level]
+            self.params["own"] = 1.0
+            entry = self.sub_context[1].named_params[0]
+            self.params["_seen"] = (
+                here.params == list(args) and here.param_cnt == 3 and here.o_name == "look"
+                and here.m_modes[0] == here.g_modes[0] == -1
+                and self.call_level == 1 == self.params["_call_level"] and self.remap_level == 0
+                and self.params.locals() == ["own"] and "main" in self.params.globals()
+                and (entry.key(), entry.data().value) == ("own", 1.0)
+            )
+            return 4.0
+        """
+    )
+    typed(interp, "#<main> = 3", "o<look> call [1] [2.5] [#<main>]", "(debug,#<_seen> #<_value> #<_call_level>)")
+    assert messages(canon) == ["1.000000 4.000000 0.000000"]
+    with pytest.raises(InterpError, match="own"):
+        typed(interp, "#1 = #<own>")
+
+
+def test_what_a_function_prints_stands_between_the_canonical_calls_around_it(tmp_path):
+    files = {
+        "machine.ini": "[RS274NGC]\nSUBROUTINE_PATH = .\n[PYTHON]\nTOPLEVEL = top.py\nPATH_PREPEND = .\n",
+        "top.py": "import oword\n",
+        "oword.py": """
+import emccanon
+def talk(self):
+    print("one")
+    emccanon.COMMENT("two")
+    print("three")
+    self.execute("(debug,four)")
+    print("five")
+""",
+        "part.ngc": "(debug,before)\no<talk> call\n(debug,after)\nm2\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    command = [sys.executable, "-m", "rs274ngc", "-i", "machine.ini", "-g", "part.ngc"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120)
+    words = re.findall(r"before|after|one|two|three|four|five", done.stdout)
+    assert words == ["before", "one", "two", "three", "four", "five", "after"], done.stdout + done.stderr
+
+
+def test_the_feed_mode_is_one_of_the_interpreter_modules_names(machine):
+    interp, canon = machine(
+        oword="""
+        def mode(self):
+            return (UNITS_PER_MINUTE, INVERSE_TIME, UNITS_PER_REVOLUTION).index(self.feed_mode)
+        """
+    )
+    typed(interp, "g94", "o<mode> call", "(debug,#<_value>)", "g93", "o<mode> call", "(debug,#<_value>)")
+    assert messages(canon) == ["0.000000", "1.000000"]
