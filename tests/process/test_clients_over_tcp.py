@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import linuxcnc
+from linuxcnc.aio import Outcome
 from tests.support.machine import PACKAGED_NML, RshClient, copy_mill, running, traces, wait_until
 from tests.support.nml_server import free_port, remote_text
 
@@ -36,6 +37,13 @@ def test_a_display_that_is_a_remote_client_runs_the_machine(tmp_path: Path, monk
         status = linuxcnc.stat()
         assert (status.joints, status.spindles) == (3, 1)  # more than crosses the wire to a stock program
         assert any(tool.id > 0 for tool in status.tool_table)
+        command = linuxcnc.command()
+        command.mdi("G1 also bad")
+        refused = command.result(60.0)
+        command.mdi("G0 X4 (MSG,moved)")
+        done = command.result(60.0)
+        assert (refused.outcome, len(refused.messages)) == (Outcome.REFUSED, 1)
+        assert (done.outcome, done.messages) == (Outcome.DONE, ("moved",))
         client.send("shutdown")
         assert run.finish() == 0
     assert traces() == []

@@ -23,6 +23,14 @@ name: str = status.file
 enabled: bool = status.joint[0]["enabled"]
 message: tuple[int, str] | None = errors.poll()
 result: int = command.wait_complete(1.0)
+came_of_it = command.result(1.0)
+texts: tuple[str, ...] = came_of_it.messages if came_of_it else ()
+
+
+async def work(machine: Machine) -> bool:
+    return bool(await machine.mdi("G0 X1"))
+
+
 value: str | None = linuxcnc.ini("machine.ini").find("EMC", "MACHINE")
 command.mdi(5)
 command.jog(linuxcnc.JOG_STOP, True)
@@ -43,7 +51,7 @@ def test_right_calls_are_accepted_and_wrong_ones_named(tmp_path):
     )
     errors = [line for line in result.stdout.splitlines() if "error:" in line]
     lines = [int(line.split(":")[1]) for line in errors]
-    assert lines == [13, 14], result.stdout
+    assert lines == [21, 22], result.stdout
 
 
 @pytest.mark.parametrize("package", ["linuxcnc", "nml", "hal"])
