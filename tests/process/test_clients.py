@@ -7,6 +7,7 @@ import pytest
 
 import linuxcnc
 from nml import namespace
+from tests.support.desk import switched_on_and_homed
 from tests.support.machine import PATIENCE, ROOT, RshClient, copy_mill, running, traces, wait_until
 
 pytestmark = pytest.mark.process
@@ -21,17 +22,6 @@ def mill(tmp_path):
     assert traces() == []
 
 
-def ready() -> tuple[linuxcnc.stat, linuxcnc.command]:
-    """Channels to a machine that is switched on and homed."""
-    status, command = linuxcnc.stat(), linuxcnc.command()
-    command.state(linuxcnc.STATE_ESTOP_RESET)
-    command.state(linuxcnc.STATE_ON)
-    wait_until(lambda: status.poll() or status.task_state == linuxcnc.STATE_ON, "machine on")
-    command.home(-1)
-    wait_until(lambda: status.poll() or all(status.homed[: status.joints]), "home")
-    return status, command
-
-
 def test_a_machine_goes_through_its_states(mill):
     status, command = linuxcnc.stat(), linuxcnc.command()
     assert (status.task_state, status.estop) == (linuxcnc.STATE_ESTOP, 1)
@@ -44,7 +34,7 @@ def test_a_machine_goes_through_its_states(mill):
 
 
 def test_mdi_moves_the_machine_and_is_done_when_it_says_so(mill):
-    status, command = ready()
+    status, command = switched_on_and_homed()
     command.mode(linuxcnc.MODE_MDI)
     command.wait_complete()
     command.mdi("G21 G90 G0 X10 Y-5 Z2")
@@ -59,7 +49,7 @@ def test_mdi_moves_the_machine_and_is_done_when_it_says_so(mill):
 
 
 def test_jogging_moves_a_joint_by_the_increment(mill):
-    status, command = ready()
+    status, command = switched_on_and_homed()
     command.mode(linuxcnc.MODE_MANUAL)
     command.teleop_enable(0)
     wait_until(lambda: status.poll() or status.motion_mode == linuxcnc.TRAJ_MODE_FREE, "free mode")
@@ -72,7 +62,7 @@ def test_jogging_moves_a_joint_by_the_increment(mill):
 
 
 def test_a_program_is_paused_stepped_resumed_and_aborted(mill, tmp_path):
-    status, command = ready()
+    status, command = switched_on_and_homed()
     part = tmp_path / "part.ngc"
     part.write_text("G21 G90 G94 G61\n" + "\n".join(f"G1 X{x} F60" for x in range(1, 200)) + "\nM2\n")
     command.mode(linuxcnc.MODE_AUTO)
@@ -94,7 +84,7 @@ def test_a_program_is_paused_stepped_resumed_and_aborted(mill, tmp_path):
 
 
 def test_the_feed_override_scales_the_feed(mill):
-    status, command = ready()
+    status, command = switched_on_and_homed()
     command.mode(linuxcnc.MODE_MDI)
     command.wait_complete()
     command.feedrate(0.5)
@@ -175,7 +165,7 @@ def test_two_machines_run_side_by_side(tmp_path, monkeypatch):
             runs[-1].__enter__().port()
         for name, target in zip(names, (5.0, 7.0), strict=True):
             monkeypatch.setenv(namespace.VARIABLE, name)
-            _, command = ready()
+            _, command = switched_on_and_homed()
             command.mode(linuxcnc.MODE_MDI)
             command.mdi(f"G21 G90 G0 X{target}")
             assert command.wait_complete(PATIENCE) == linuxcnc.RCS_DONE

@@ -5,7 +5,8 @@ import time
 import pytest
 
 import linuxcnc
-from tests.support.machine import copy_mill, running, traces, wait_until
+from tests.support.desk import switched_on_and_homed
+from tests.support.machine import copy_mill, running, traces
 
 pytestmark = pytest.mark.process
 
@@ -27,12 +28,7 @@ def first_done_status(status, serial):
 def test_the_first_status_that_says_done_shows_the_feedback_at_the_end_point(tmp_path):
     with running(copy_mill(tmp_path), speed=4.0) as run:
         run.port()
-        status, command = linuxcnc.stat(), linuxcnc.command()
-        command.state(linuxcnc.STATE_ESTOP_RESET)
-        command.state(linuxcnc.STATE_ON)
-        wait_until(lambda: status.poll() or status.task_state == linuxcnc.STATE_ON, "machine on")
-        command.home(-1)
-        wait_until(lambda: status.poll() or all(status.homed[: status.joints]), "home")
+        status, command = switched_on_and_homed()
         command.mode(linuxcnc.MODE_MDI)
         command.wait_complete()
         for n in range(MOVES):

@@ -9,7 +9,8 @@ import pytest
 
 import linuxcnc
 from linuxcnc.aio import Machine, Outcome, Result
-from tests.support.machine import PATIENCE, copy_mill, running, wait_until
+from tests.support.desk import switched_on_and_homed
+from tests.support.machine import PATIENCE, copy_mill, running
 
 pytestmark = pytest.mark.process
 
@@ -19,11 +20,7 @@ def mill(tmp_path):
     """A mill that is on, homed and in MDI mode."""
     with running(copy_mill(tmp_path), speed=10.0) as run:
         run.port()
-        status, command = linuxcnc.stat(), linuxcnc.command()
-        command.state(linuxcnc.STATE_ESTOP_RESET)
-        command.state(linuxcnc.STATE_ON)
-        command.home(-1)
-        wait_until(lambda: status.poll() or all(status.homed[:3]), "home")
+        status, command = switched_on_and_homed()
         command.mode(linuxcnc.MODE_MDI)
         command.wait_complete()
         yield status

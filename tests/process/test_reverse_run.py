@@ -3,6 +3,7 @@
 import pytest
 
 import linuxcnc
+from tests.support.desk import switched_on_and_homed
 from tests.support.machine import copy_mill, running, traces, wait_until
 
 pytestmark = pytest.mark.process
@@ -18,12 +19,7 @@ def test_a_paused_program_is_run_back_to_its_start_and_on_to_its_end(tmp_path):
     part.write_text("G21 G90 G94 G64 P0.01 F300\nG1 X5\nG1 Y100\nG2 X-95 Y0 I-100 F6000\nG1 X20\nM2\n")
     with running(copy_mill(tmp_path), speed=4.0) as run:
         run.port()
-        status, command = linuxcnc.stat(), linuxcnc.command()
-        command.state(linuxcnc.STATE_ESTOP_RESET)
-        command.state(linuxcnc.STATE_ON)
-        wait_until(lambda: status.poll() or status.task_state == linuxcnc.STATE_ON, "machine on")
-        command.home(-1)
-        wait_until(lambda: status.poll() or all(status.homed[: status.joints]), "home")
+        status, command = switched_on_and_homed()
         command.mode(linuxcnc.MODE_AUTO)
         command.wait_complete()
         command.program_open(str(part))

@@ -14,6 +14,17 @@ DONE, ERROR = linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR
 TOOLS = "T1 P1 D3 Z1\nT2 P2 D6 Z-12.5\n"
 
 
+def switched_on_and_homed() -> tuple[linuxcnc.stat, linuxcnc.command]:
+    """Channels to the machine of this namespace, once it is on and homed."""
+    status, command = linuxcnc.stat(), linuxcnc.command()
+    command.state(linuxcnc.STATE_ESTOP_RESET)
+    command.state(linuxcnc.STATE_ON)
+    wait_until(lambda: status.poll() or status.task_state == linuxcnc.STATE_ON, "machine on")
+    command.home(-1)
+    wait_until(lambda: status.poll() or all(status.homed[: status.joints]), "home")
+    return status, command
+
+
 class Desk:
     """A client that notes every text for the operator."""
 
