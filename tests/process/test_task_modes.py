@@ -54,8 +54,8 @@ def test_the_mode_survives_that_the_machine_is_off(desk):
 def test_a_loaded_program_can_be_held_before_it_begins_and_an_abort_lets_go(desk):
     desk.ready(linuxcnc.MODE_AUTO)
     desk.program("G0 X1\nM2\n")
-    desk.do(desk.command.auto, linuxcnc.AUTO_PAUSE)
-    assert (desk.stat.interp_state, desk.stat.task_paused) == (linuxcnc.INTERP_PAUSED, 1)
+    desk.command.auto(linuxcnc.AUTO_PAUSE)
+    desk.until(lambda s: (s.interp_state, s.task_paused) == (linuxcnc.INTERP_PAUSED, 1), "held")
     assert desk.do(desk.command.abort) == DONE
     assert desk.stat.interp_state == linuxcnc.INTERP_IDLE
     desk.run()
