@@ -9,7 +9,8 @@ import { KIND } from "./data.js";
 import { colourOf } from "./colours.js";
 
 const TRAIL_POINTS = 20_000;
-const FRAME_MS = 33; // between two pictures at most
+const FRAME_MS = 33; // between two pictures at least
+const DRAWING = 2; // times as long as a picture took to draw the page does other things
 const PICK_PIXELS = 8;
 const GRID_LINES = 2000; // a denser grid would be a plane
 const FAR = 1e6;
@@ -33,6 +34,7 @@ export class Scene {
   #pieces = [];
   #frame = 0;
   #lastFrame = 0;
+  #pause = FRAME_MS;
   #trailCount = 0;
   /** @type {[number[], number[]]} least and greatest corner of what the grid lies under */
   #floor = [[0, 0, 0], [0, 0, 0]];
@@ -390,17 +392,19 @@ export class Scene {
   /** Ask for a picture; several requests make one. */
   draw() {
     if (this.#frame || !this.visible) return;
-    const wait = Math.max(0, FRAME_MS - (performance.now() - this.#lastFrame));
+    const wait = Math.max(0, this.#pause - (performance.now() - this.#lastFrame));
     this.#frame = window.setTimeout(() => requestAnimationFrame(() => this.#render()), wait);
   }
 
   #render() {
     this.#frame = 0;
-    this.#lastFrame = performance.now();
+    const began = performance.now();
     const mark = this.#unitsPerPixel() * 16; // marks keep their size on the screen
     for (const object of [...this.tools, this.cursor]) object.scale.setScalar(mark);
     this.origin.scale.setScalar(mark * 2.5);
     this.renderer.render(this.scene, this.camera);
+    this.#lastFrame = performance.now();
+    this.#pause = Math.max(FRAME_MS, DRAWING * (this.#lastFrame - began));
   }
 }
 
