@@ -37,8 +37,8 @@ cdef inline uint32_t port_readable(hal_port* port) noexcept nogil:
 
 
 cdef inline uint32_t port_writable(hal_port* port) noexcept nogil:
-    """Bytes for which there is room."""
-    return 0 if port == NULL else port.size - port_readable(port)
+    """Bytes for which there is room; as with LinuxCNC's ports, one byte of the size is never used."""
+    return 0 if port == NULL or port.size == 0 else port.size - 1 - port_readable(port)
 
 
 cdef inline bint port_peek(hal_port* port, char* into, uint32_t count) noexcept nogil:
