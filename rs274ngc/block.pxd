@@ -35,7 +35,8 @@ cdef enum:
 
     G_GROUPS = 16
     M_GROUPS = 11
-    LINE_SIZE = 256  # characters of a line, the closing zero included
+    LINE_SIZE = 255  # room for the characters of a line and the closing zero
+    LINE_MAX = 252   # characters of a line of a program, as in LinuxCNC
     MAX_SETTINGS = 50
 
 

@@ -94,7 +94,7 @@ cdef class Canon:
         """Arc or helix in the selected plane; ends and centre in the order of the plane (XY, ZX, YZ). ``rotation``: turns begun, positive counter-clockwise."""
 
     cpdef void nurbs_feed(self, int line, list control_points, int order) except *:
-        """A NURBS of control points (x, y, weight) in the XY plane, of ``order`` k, with a uniform clamped knot vector."""
+        """A NURBS of control points (first axis, second axis, weight) in the selected plane, of ``order`` k, with a uniform clamped knot vector."""
 
     cpdef void nurbs_knots_feed(self, int line, list control_points, list knots, int order) except *:
         """The same with the program's own knots."""

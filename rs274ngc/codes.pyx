@@ -28,7 +28,7 @@ from rs274ngc.offsets cimport (
 )
 from rs274ngc.path cimport polar_to_xy
 from rs274ngc.remapping cimport take_over
-from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_point, quadratic_spline
+from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_knot, nurbs_point, quadratic_spline
 from rs274ngc.state cimport State, fail, fail_word
 from rs274ngc.threads cimport check_g76, check_threading, rigid_tap, spindle_feed, threading_cycle
 from rs274ngc.tools cimport change_tool, declare_tool, select_tool
@@ -81,7 +81,8 @@ g(3, 1, "IJKRP", arc, "Arc or helix, counter-clockwise", check_turns)
 g(5, 1, "IJPQ", cubic_spline, "Cubic spline", NULL, AXES_NEEDED)
 g(5.1, 1, "IJ", quadratic_spline, "Quadratic spline", NULL, AXES_NEEDED)
 g(5.2, 1, "PL", nurbs_point, "NURBS: control point")
-g(5.3, 1, "", nurbs_end, "NURBS: end")
+g(5.3, 1, "P", nurbs_end, "NURBS: end")
+g(6.2, 1, "KPQR", nurbs_knot, "NURBS with knots: control point with weight R and knot K, order P")
 g(33, 1, "K$", spindle_feed, "Spindle-synchronised move", check_threading, AXES_NEEDED)
 g(33.1, 1, "K$I", rigid_tap, "Rigid tapping", check_threading, AXES_NEEDED)
 g(38.2, 1, "", probe, "Probe towards, error if nothing was found", NULL, AXES_NEEDED)
@@ -217,6 +218,10 @@ cdef int enhance(State s, Block* b) except -1:
     cdef bint taken = axes_taken(b)
     b.motion = -1
     if b.g[1] >= 0:
+        if b.g[1] == 53 and b.g[0] >= 0:
+            return fail(s, "Two g codes used from same modal group", b.g_at[1])
+        if b.g[1] == 53 and axes and s.motion == 800:
+            return fail(s, IDLE_AXES)
         if b.g[1] == 800:
             if axes and not taken_by_0:
                 return fail(s, "Cannot use axis values with g80", b.g_at[1])

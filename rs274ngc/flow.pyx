@@ -8,9 +8,10 @@ over lines that are not to be run looks at nothing but O-words.
 import os
 
 from libc.math cimport fabs, floor
+from libc.string cimport strlen
 
 from nml.errors import InterpError
-from rs274ngc.block cimport LINE_SIZE
+from rs274ngc.block cimport LINE_MAX, LINE_SIZE
 from rs274ngc.scan cimport read_integer, read_name, read_value, skip_comments, strip
 from rs274ngc.remapping import begin_python_sub
 from rs274ngc.source cimport Source
@@ -53,13 +54,13 @@ cdef class Flow:
         cdef State s = self.s
         cdef int size
         self.line_start = self.source.position
-        size = self.source.next_line(s.raw, LINE_SIZE)
+        size = self.source.next_line(s.raw, LINE_SIZE, LINE_MAX)
         s.line = self.source.line
         if size == -1:
             return size         # what the state has is the last line: an error at the end of the file shows it
         s.raw_size = max(size, 0)
         if size == -2:
-            s.raw[0] = 0
+            s.raw_size = <int>strlen(s.raw)     # the error shows as much of it
             s.size = 0
             return fail(s, "Command too long")
         return size
@@ -98,7 +99,7 @@ cdef class Flow:
         cdef char c
         while True:
             self.line_start = self.source.position
-            size = self.source.next_line(s.raw, LINE_SIZE)
+            size = self.source.next_line(s.raw, LINE_SIZE, LINE_MAX)
             if size == -1:
                 return -1
             s.line = self.source.line

@@ -1,4 +1,4 @@
-"""A canon that writes down the calls instead of making them: compensation holds back what follows an open corner."""
+"""A canon that writes down calls instead of making them: compensation holds back a move, and what follows it."""
 
 from __future__ import annotations
 
@@ -20,10 +20,13 @@ class HeldCanon(Canon):
 
 
 def holding(name: str) -> Callable[..., None]:
-    """A method that writes down its call."""
+    """A method that writes down its call while a move is held."""
 
     def method(self: HeldCanon, *arguments: Any) -> None:
-        self.held.append((name, arguments))
+        if self.held:
+            self.held.append((name, arguments))
+        else:
+            getattr(self.canon, name)(*arguments)
 
     return method
 

@@ -339,7 +339,7 @@ cdef class Interpreter:
                 return OK
         enhance(s, b)
         check(s, b)
-        if b.comment >= 0:
+        if b.comment >= 0 and b.comment_size:
             b.steps |= 2
         return OK
 

@@ -1,6 +1,6 @@
 """M codes: spindles, coolant, overrides, inputs and outputs, stops, the end of a program, the user's M codes."""
 
-from libc.math cimport floor
+from libc.math cimport fabs, floor
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import (
@@ -13,6 +13,7 @@ from rs274ngc.state cimport EXIT, FINISH, WAIT_INPUT, State, fail, fail_word
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, STOPPED = CANON_STOPPED
 cdef int CLOCKWISE = CANON_CLOCKWISE, COUNTERCLOCKWISE = CANON_COUNTERCLOCKWISE
+cdef double INTEGER_TOLERANCE = 0.001     # of P of M19
 cdef int OUTPUTS_MAX = 63       # highest number of a digital or analog input or output
 cdef double NO_VALUE = -1.0     # what M67 and M68 without Q send, as LinuxCNC does
 
@@ -38,7 +39,9 @@ cdef int spindle(State s, Block* b, int code) except -1:
 
 cdef int check_orient(State s, Block* b, int code) except -1:
     """What M19 may say."""
-    if has(b, W_P) and b.value[W_P] not in (0.0, 1.0, 2.0):
+    if has(b, W_P) and fabs(b.value[W_P] - floor(b.value[W_P] + 0.5)) > INTEGER_TOLERANCE:
+        return fail_word(s, "P value not an integer with M19 G2 or G3", W_P)
+    if has(b, W_P) and not 0.0 <= floor(b.value[W_P] + 0.5) <= 2.0:
         return fail_word(s, "P value must be 0,1,or 2 with M19", W_P)
     if has(b, W_R) and not 0.0 <= b.value[W_R] <= 360.0:
         return fail_word(s, "R value must be within 0..360 with M19", W_R)
@@ -53,7 +56,7 @@ cdef int orient(State s, Block* b, int code) except -1:
     cdef double angle
     if has(b, W_R) or has(b, W_P):
         angle = value_or(b, W_R, 0.0) + s.orient_offset
-        s.canon.orient_spindle(n, angle - 360.0 * floor(angle / 360.0) if angle >= 360.0 else angle, <int>value_or(b, W_P, 0.0))
+        s.canon.orient_spindle(n, angle - 360.0 * floor(angle / 360.0) if angle >= 360.0 else angle, <int>floor(value_or(b, W_P, 0.0) + 0.5))
     if has(b, W_Q):
         s.canon.wait_spindle_orient_complete(n, b.value[W_Q])
     s.turning[n] = STOPPED

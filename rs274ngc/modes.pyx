@@ -174,6 +174,8 @@ cdef int set_speed(State s, Block* b) except -1:
 
 cdef int set_control(State s, Block* b, int code) except -1:
     """G61, G61.1, G64 with P and Q"""
+    if s.comp_side != SIDE_OFF:
+        return fail(s, "Cannot change control mode with cutter radius compensation on", b.g_at[13])
     if code == 640:
         s.control_mode = CONTINUOUS
         s.tolerance = value_or(b, W_P, 0.0)

@@ -20,7 +20,7 @@ cdef enum:
 
 
 cdef int check_dwell(State s, Block* b, int code) except -1:
-    if not has(b, W_P) or b.value[W_P] < 0.0:
+    if value_or(b, W_P, -1.0) == -1.0:
         return fail(s, "Dwell time missing with g4", b.g_at[0])
     if b.motion == 20 or b.motion == 30:
         return fail(s, "G4 not allowed with G2 or G3 because they both use P", b.g_at[0])
@@ -188,10 +188,10 @@ cdef int probe(State s, Block* b, int code) except -1:
     cdef double[9] end
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot probe with cutter radius comp on", b.g_at[G_MOTION_GROUP])
-    if s.feed_mode == 950:
-        return fail(s, "Cannot probe with feed per rev mode", b.g_at[G_MOTION_GROUP])
     if s.feed == 0.0:
         return fail(s, "Cannot probe with zero feed rate", b.g_at[G_MOTION_GROUP])
+    if s.feed_mode == 950:
+        return fail(s, "Cannot probe with feed per rev mode", b.g_at[G_MOTION_GROUP])
     find_end(s, b, end)
     if (code == 382 or code == 384) and straight_length(s.pos, end) == 0.0:
         return fail(s, "Start point too close to probe point", b.g_at[G_MOTION_GROUP])

@@ -16,10 +16,6 @@ BLEND: int
 TANGENT: int
 NURBS_STEPS: int
 
-def nurbs_point(
-    control_points: list[tuple[float, float, float]], knots: list[float], order: int, at: float
-) -> tuple[float, float]: ...
-
 class MoveCanon(Canon):
     coords: Coordinates
     motion_mode: int

@@ -13,7 +13,9 @@ line leaves only the rest of it to the planner: path error within P.
 
 from libc.math cimport INFINITY, atan2, cos, fabs, fmax, fmin, hypot, sin, sqrt
 
+from rs274ngc import nurbs
 from rs274ngc.canon import CANON_CONTINUOUS, CANON_EXACT_PATH, CANON_EXACT_STOP
+from rs274ngc.path cimport plane_axes
 
 TRAVERSE, FEED, ARC, TOOLCHANGE, PROBING, INDEXROTARY = range(1, 7)
 """Kinds of moves: EMC_MOTION_TYPE_*."""
@@ -93,22 +95,6 @@ cdef void arc_middle(const Arc* arc, double* middle) noexcept nogil:
         turned = (r[axis] * cosine + (n[(axis + 1) % 3] * r[(axis + 2) % 3] - n[(axis + 2) % 3] * r[(axis + 1) % 3]) * sine
                   + n[axis] * height * (1.0 - cosine))
         middle[axis] = arc.centre[axis] + turned + 0.5 * arc.height * n[axis]
-
-
-def nurbs_point(list control_points, list knots, int order, double at):
-    """The point (x, y) at parameter ``at`` of a NURBS of control points (x, y, weight)."""
-    cdef int i, k, count = len(control_points)
-    basis = [1.0 if knots[i] <= at < knots[i + 1] or (at >= knots[count] and i == count - 1) else 0.0 for i in range(count)]
-    basis.append(0.0)
-    for k in range(2, order + 1):
-        for i in range(count):
-            left = knots[i + k - 1] - knots[i]
-            right = knots[i + k] - knots[i + 1]
-            basis[i] = ((at - knots[i]) / left * basis[i] if left > 0.0 else 0.0) + (
-                (knots[i + k] - at) / right * basis[i + 1] if right > 0.0 else 0.0)
-    total = sum([basis[i] * control_points[i][2] for i in range(count)])
-    return (sum([basis[i] * p[0] * p[2] for i, p in enumerate(control_points)]) / total,
-            sum([basis[i] * p[1] * p[2] for i, p in enumerate(control_points)]) / total)
 
 
 cdef class MoveCanon(Canon):
@@ -289,11 +275,13 @@ cdef class MoveCanon(Canon):
     cpdef void nurbs_knots_feed(self, int line, list control_points, list knots, int order) except *:
         cdef int step, steps = NURBS_STEPS * len(control_points)
         cdef double first = knots[order - 1], last = knots[len(control_points)]
+        cdef int* axes = plane_axes[self.coords.plane]
         x, y, z, a, b, c, u, v, w = self.chain_end()
         here = self.coords.to_program(x, y, z, a, b, c, u, v, w)
+        end = list(here[:3])
         for step in range(1, steps + 1):
-            x, y = nurbs_point(control_points, knots, order, first + (last - first) * step / steps)
-            self.straight_feed(line, x, y, here[2], here[3], here[4], here[5], here[6], here[7], here[8])
+            end[axes[0]], end[axes[1]] = nurbs.point(control_points, order, knots, first + (last - first) * step / steps)
+            self.straight_feed(line, end[0], end[1], end[2], here[3], here[4], here[5], here[6], here[7], here[8])
 
     cpdef void straight_probe(self, int line, double x, double y, double z, double a, double b, double c, double u, double v, double w, int probe_type) except *:
         cdef double to[9]

@@ -1,7 +1,8 @@
-"""Points on a NURBS curve in the plane, for canons that only know straight lines."""
+"""Points on a NURBS curve in a plane, for canons that only know straight lines."""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from math import hypot
 
@@ -18,9 +19,7 @@ def point(
     control: Sequence[tuple[float, float, float]], order: int, knots: Sequence[float], t: float
 ) -> tuple[float, float]:
     """The curve at parameter ``t``, by de Boor's recursion on homogeneous coordinates."""
-    span = order - 1
-    while span < len(control) - 1 and t >= knots[span + 1]:
-        span += 1
+    span = min(bisect_right(knots, t, order) - 1, len(control) - 1)
     work = [(x * w, y * w, w) for x, y, w in control[span - order + 1 : span + 1]]
     for level in range(1, order):
         for k in range(order - 1, level - 1, -1):
@@ -34,14 +33,18 @@ def point(
     return (x / weight, y / weight) if weight else (x, y)
 
 
-def points(control: Sequence[tuple[float, float, float]], order: int) -> Iterator[tuple[float, float]]:
+def points(
+    control: Sequence[tuple[float, float, float]], order: int, knots: Sequence[float]
+) -> Iterator[tuple[float, float]]:
     """Points along the curve, the start left out, the end exact."""
-    order = max(2, min(order, len(control)))
-    knots = knot_vector(len(control), order)
+    if not 2 <= order <= len(control):
+        order = max(2, min(order, len(control)))
+        knots = knot_vector(len(control), order)
+    begin, end = knots[order - 1], knots[len(control)]
     steps = (len(control) - order + 1) * SEGMENTS_PER_SPAN
     last = control[0][:2]
     for step in range(1, steps):
-        here = point(control, order, knots, knots[-1] * step / steps)
+        here = point(control, order, knots, begin + (end - begin) * step / steps)
         if hypot(here[0] - last[0], here[1] - last[1]) > 0.0:
             yield here
         last = here

@@ -12,6 +12,7 @@ from rs274ngc.canon import (
     CANON_CLOCKWISE, CANON_CONTINUOUS, CANON_COUNTERCLOCKWISE, CANON_PLANE_XY, CANON_STOPPED, CANON_UNITS_INCHES,
     CANON_UNITS_MM, Tool,
 )
+from rs274ngc.path cimport plane_axes
 
 cdef double BACK_OFF_INCH = 0.01        # how far short of its target a probing move ends
 cdef double MM_PER_INCH = 25.4
@@ -116,8 +117,14 @@ cdef class OfflineCanon(Canon):
             self.move_to(second_end, axis_end, first_end, a, b, c, u, v, w)
 
     cpdef void nurbs_feed(self, int line, list control_points, int order) except *:
-        for x, y in nurbs.points(control_points, order):
-            self.straight_feed(line, x, y, self.pos[2], self.pos[3], self.pos[4], self.pos[5], self.pos[6], self.pos[7], self.pos[8])
+        self.nurbs_knots_feed(line, control_points, nurbs.knot_vector(len(control_points), order), order)
+
+    cpdef void nurbs_knots_feed(self, int line, list control_points, list knots, int order) except *:
+        cdef int* axes = plane_axes[self.plane]
+        for first, second in nurbs.points(control_points, order, knots):
+            end = [self.pos[0], self.pos[1], self.pos[2]]
+            end[axes[0]], end[axes[1]] = first, second
+            self.straight_feed(line, end[0], end[1], end[2], self.pos[3], self.pos[4], self.pos[5], self.pos[6], self.pos[7], self.pos[8])
 
     cpdef void start_spindle_clockwise(self, int spindle, bint wait_for_atspeed) except *:
         self.turning[spindle] = CANON_CLOCKWISE

@@ -159,7 +159,7 @@ cdef int axis_offset(State s, Block* b, int code) except -1:
     cdef double[9] point
     cdef double value
     cdef int k
-    if s.comp_side != SIDE_OFF:
+    if s.comp_side != SIDE_OFF and (code == 920 or code == 520):
         return fail(s, "Cannot change axis offsets with cutter radius comp", b.g_at[0])
     if code == 920 or code == 520:
         to_machine(s, point)
@@ -243,10 +243,10 @@ cdef int set_origin(State s, Block* b, int l) except -1:
     cdef double value, rotation
     cdef double* stored
     cdef int k, index = <int>b.value[W_P]
-    if s.comp_side != SIDE_OFF:
-        return fail(s, "Cannot change coordinate systems with cutter radius compensation on", b.g_at[0])
     if index == 0:
         index = s.origin_index
+    if s.comp_side != SIDE_OFF and index == s.origin_index:
+        return fail(s, "Cannot change the active coordinate system with cutter radius compensation on", b.g_at[0])
     to_machine(s, point)
     stored = &s.params[ORIGIN_FIRST + (index - 1) * ORIGIN_STEP]
     if has(b, W_R):
@@ -306,7 +306,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
     offset = list(entry.offset)
     diameter = entry.diameter
     front, back, orientation = entry.frontangle, entry.backangle, entry.orientation
-    if l == 1 and not (b.words & (M_AXES | (1 << W_R) | (1 << W_I) | (1 << W_J) | (1 << W_Q))):
+    if not (b.words & (M_AXES | (1 << W_R) | (1 << W_I) | (1 << W_J) | (1 << W_Q))):
         return fail(s, "G10 L1 without offsets has no effect", b.g_at[0])
     if l == 1:
         for k in range(9):

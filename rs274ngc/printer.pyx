@@ -86,7 +86,7 @@ cdef class PrintCanon(OfflineCanon):
         cdef char* out = self.buffer + self.used
         if self.state is not None:
             raw = self.state.raw
-            while raw[i] == c' ' or raw[i] == c'\t':
+            while raw[i] == c' ' or raw[i] == c'\t' or raw[i] == c'/':
                 i += 1
         if raw == NULL or (raw[i] != c'N' and raw[i] != c'n'):
             memcpy(out, b"N..... ", 7)
@@ -291,6 +291,9 @@ cdef class PrintCanon(OfflineCanon):
         """LinuxCNC's printing canon then stands at X0 Y0, which shows when the program asks for its place: so does this one."""
         self.say("NURBS_FEED", f"{len(control_points)}, ...")
         self.pos[0] = self.pos[1] = 0.0
+
+    cpdef void nurbs_knots_feed(self, int line, list control_points, list knots, int order) except *:
+        self.nurbs_feed(line, control_points, order)
 
     cpdef void rigid_tap(self, int line, double x, double y, double z, double scale) except *:
         self.say("RIGID_TAP", f"{x:.4f}, {y:.4f}, {z:.4f}")

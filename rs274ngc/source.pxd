@@ -14,5 +14,5 @@ cdef class Source:
     cdef readonly long bytes    # size of the file
     cdef readonly tuple version # another one when the file has been edited or replaced
     cdef char[CHUNK] buffer
-    cdef int next_line(self, char* out, int capacity) except -3
+    cdef int next_line(self, char* out, int capacity, int longest) except -3
     cdef bint fill(self, long position) except -1

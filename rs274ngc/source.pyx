@@ -42,7 +42,7 @@ cdef class Source:
         self.size = <int>got
         return got > 0
 
-    cdef int next_line(self, char* out, int capacity) except -3:
+    cdef int next_line(self, char* out, int capacity, int longest) except -3:
         """Copy the next line without its end to ``out``: its length; -1 at the end of the file, -2 if it is too long."""
         cdef int used = 0, room
         cdef long at
@@ -61,18 +61,18 @@ cdef class Source:
             begin = self.buffer + at
             end = <char*>memchr(begin, c'\n', self.size - at)
             room = <int>((end - begin) if end != NULL else self.size - at)
-            if used + room < capacity:
-                memcpy(out + used, begin, room)
+            if used < capacity - 1:
+                memcpy(out + used, begin, min(room, capacity - 1 - used))
             used += room
             self.position += room
             if end != NULL:
                 self.position += 1
                 break
             if used > (1 << 30):
-                used = capacity
+                used = capacity     # no sum of such lengths overflows
         self.line += 1
-        if used >= capacity:
-            out[0] = 0
+        if used > longest:
+            out[min(used, capacity - 1)] = 0
             return -2
         if used > 0 and out[used - 1] == c'\r':
             used -= 1

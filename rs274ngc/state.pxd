@@ -96,7 +96,7 @@ cdef class State:
     cdef double comp_x, comp_y, comp_z      # programmed point while the tool is elsewhere
     cdef public object comp_queue
     # Splines
-    cdef public list nurbs_points
+    cdef public list nurbs_points, nurbs_knots
     cdef public double nurbs_order
     cdef double last_i, last_j
     cdef public bint nurbs_active

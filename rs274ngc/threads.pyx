@@ -4,12 +4,12 @@ from libc.math cimport M_PI, fabs, hypot, pow, tan
 from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
-from rs274ngc.canon import CANON_SIDE_OFF, CANON_STOPPED
+from rs274ngc.canon import CANON_PLANE_XY, CANON_SIDE_OFF, CANON_STOPPED
 from rs274ngc.modes cimport synchronised_spindle
 from rs274ngc.path cimport feed, find_end, traverse
 from rs274ngc.state cimport State, fail, fail_word
 
-cdef int SIDE_OFF = CANON_SIDE_OFF, STOPPED = CANON_STOPPED
+cdef int PLANE_XY = CANON_PLANE_XY, SIDE_OFF = CANON_SIDE_OFF, STOPPED = CANON_STOPPED
 cdef int PASSES_MAX = 1000000
 
 cdef enum:
@@ -38,11 +38,23 @@ cdef int turning_spindle(State s, Block* b, str name) except -1:
     return spindle
 
 
+cdef int refuse_compensated(State s, const double* end) except -1:
+    """A threading move cannot be compensated; the words are LinuxCNC's."""
+    cdef double length = hypot(end[0] - s.pos[0], end[1] - s.pos[1] if s.plane == PLANE_XY else end[2] - s.pos[2])
+    if s.comp_side == SIDE_OFF or s.comp_radius == 0.0:
+        return 0
+    if s.comp_first and length <= s.comp_radius:
+        return fail(s, "Length of cutter compensation entry move is not greater than the tool radius")
+    return fail(s, "Bug code not g0 or g1")
+
+
 cdef int spindle_feed(State s, Block* b, int code) except -1:
     """G33 K pitch: a straight move in step with the spindle"""
     cdef double[9] end
-    cdef int spindle = turning_spindle(s, b, "G33")
+    cdef int spindle
     find_end(s, b, end)
+    refuse_compensated(s, end)
+    spindle = turning_spindle(s, b, "G33")
     s.canon.start_speed_feed_synch(spindle, b.value[W_K], False)
     feed(s, end)
     s.canon.stop_speed_feed_synch()
@@ -53,8 +65,10 @@ cdef int spindle_feed(State s, Block* b, int code) except -1:
 cdef int rigid_tap(State s, Block* b, int code) except -1:
     """G33.1 K pitch: to the end and back to the start, the spindle reverses; I: speed of the way back"""
     cdef double[9] end
-    cdef int spindle = turning_spindle(s, b, "G33.1")
+    cdef int spindle
     find_end(s, b, end)
+    refuse_compensated(s, end)
+    spindle = turning_spindle(s, b, "G33.1")
     s.canon.start_speed_feed_synch(spindle, b.value[W_K], False)
     s.canon.rigid_tap(s.line, end[0], end[1], end[2], value_or(b, W_I, 1.0))
     s.canon.stop_speed_feed_synch()

@@ -1,6 +1,7 @@
 """The interpreter beside Debian's: same canonical calls, same refusals, for its own programs and for random ones.
 
-``PYEMC_RS274_PROGRAMS`` sets the number of random programs (default 60), ``PYEMC_RS274_SEED`` the first of them.
+``PYEMC_RS274_PROGRAMS`` sets the number of random programs of each generator (default 60), ``PYEMC_RS274_SEED`` the
+first of them.
 """
 
 import os
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.differential import PEER, Outcome, calls, ours, run, theirs
+from tests.support.differential import GENERATORS, PEER, Outcome, calls, ours, run, theirs
 
 ROOT = Path(__file__).parents[2]
 CONFIGURATIONS = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/remap")
@@ -231,7 +232,8 @@ def test_a_stock_configuration_with_remaps_gives_the_same_calls(
     assert outputs[1] == outputs[0]
 
 
+@pytest.mark.parametrize("generator", GENERATORS)
 @pytest.mark.parametrize("seed", range(SEED, SEED + COUNT))
-def test_a_random_program_gives_the_same_calls_and_refusals(seed: int) -> None:
-    unexplained = [found for found in run(range(seed, seed + 1)) if not found[1]]
+def test_a_random_program_gives_the_same_calls_refusals_and_parameters(generator: str, seed: int) -> None:
+    unexplained = [found for found in run(range(seed, seed + 1), generator) if not found[1]]
     assert not unexplained

@@ -1,9 +1,12 @@
 """Many random programs through Debian's interpreter and ours: the recorded run, and the pieces of its test.
 
-    python -m tests.support.differential --programs 10000 --first 1
+    python -m tests.support.differential --programs 10000 --first 1 --generator words
 
-Each seed makes one program; every third has wrong lines in it. A difference is reported with its seed and the first
-line that differs. ``KNOWN`` names the differences that docs/gcode-differences.md explains, by what they look like.
+Each seed makes one program by one of three generators, which know nothing of each other: ``pieces`` (``gcode``:
+meaningful pieces, every third program with wrong lines), ``words`` (``wordy``: words in any dress, on random machines)
+and ``contours`` (cutter compensation). Calls, refusals and the parameter file afterwards are compared; a difference is
+reported with its seed and the first line that differs. ``KNOWN`` names the differences that docs/gcode-differences.md
+explains, by what they look like.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
 from dataclasses import dataclass
 from io import StringIO
@@ -23,12 +26,15 @@ from itertools import zip_longest
 from pathlib import Path
 
 from rs274ngc import __main__ as rs274
+from tests.support.contours import Contour
 from tests.support.gcode import TOOLS, Generator
+from tests.support.wordy import Machine, Wordy, machine
 
 PEER = Path("/usr/bin/rs274")
 TIMEOUT_S = 5
 SPINDLES = 3
-MACHINE = f"[TRAJ]\nSPINDLES={SPINDLES}\n[RS274NGC]\nPARAMETER_FILE=machine.var\n"
+PLAIN = Machine(TOOLS, "", "", False)
+SEVERAL_SPINDLES = Machine(TOOLS, "", f"[TRAJ]\nSPINDLES={SPINDLES}\n[RS274NGC]\nPARAMETER_FILE=machine.var\n", False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +43,7 @@ class Outcome:
 
     calls: list[str]
     refusal: tuple[str, str]  # the first error and the block it is about
+    parameters: list[str]  # numbers and values of the parameter file afterwards
 
 
 def calls(output: str) -> list[str]:
@@ -58,23 +65,29 @@ def refusal(errors: str) -> tuple[str, str]:
     return (lines[0], lines[1].rstrip()) if len(lines) > 1 else ("", "")
 
 
-def prepare(folder: Path) -> None:
-    """The files that both read: a tool table, empty parameters, an INI file with several spindles."""
-    (folder / "test.tbl").write_text(TOOLS)
-    (folder / "machine.ini").write_text(MACHINE)
-    for name in ("machine.var", "none.var"):
-        (folder / name).write_text("")
+def parameters(folder: Path) -> list[str]:
+    """The parameter file in one form, -0 being 0."""
+    words = (line.split() for line in (folder / "machine.var").read_text().splitlines())
+    return [f"#{word[0]}={float(word[1]) or 0.0:.6f}" for word in words if len(word) == 2]
 
 
-def options(spindles: bool) -> list[str]:
-    return ["-t", "test.tbl", *(["-i", "machine.ini"] if spindles else ["-v", "none.var"]), "-g"]
+def prepare(folder: Path, machine: Machine) -> None:
+    """The files that both read."""
+    (folder / "test.tbl").write_text(machine.tools)
+    (folder / "machine.ini").write_text(machine.ini)
+    (folder / "machine.var").write_text(machine.parameters)
 
 
-def theirs(folder: Path, program: Path, spindles: bool = False) -> Outcome:
+def options(machine: Machine) -> list[str]:
+    settings = ["-i", "machine.ini"] if machine.ini else ["-v", "machine.var"]
+    return ["-t", "test.tbl", *settings, *(["-b"] if machine.block_delete else []), "-g"]
+
+
+def theirs(folder: Path, program: Path, machine: Machine = PLAIN) -> Outcome:
     """Debian's interpreter."""
-    prepare(folder)
+    prepare(folder, machine)
     done = subprocess.run(
-        [str(PEER), *options(spindles), str(program)],
+        [str(PEER), *options(machine), str(program)],
         env=dict(os.environ, HOME=str(folder)),  # its tool data is a file there
         cwd=folder,
         capture_output=True,
@@ -83,36 +96,46 @@ def theirs(folder: Path, program: Path, spindles: bool = False) -> Outcome:
         timeout=TIMEOUT_S,
         check=False,
     )
-    return Outcome(calls(done.stdout), refusal(done.stderr))
+    return Outcome(calls(done.stdout), refusal(done.stderr), parameters(folder))
 
 
-def ours(folder: Path, program: Path, spindles: bool = False) -> Outcome:
+def ours(folder: Path, program: Path, machine: Machine = PLAIN) -> Outcome:
     """Ours, in this process."""
-    prepare(folder)
+    prepare(folder, machine)
     errors, output, here = StringIO(), folder / "output", os.getcwd()
     os.chdir(folder)
     try:
         with redirect_stderr(errors):
-            rs274.main([*options(spindles), str(program), str(output)])
+            rs274.main([*options(machine), str(program), str(output)])
     finally:
         os.chdir(here)
-    return Outcome(calls(output.read_text(errors="replace")), refusal(errors.getvalue()))
+    return Outcome(calls(output.read_text(errors="replace")), refusal(errors.getvalue()), parameters(folder))
 
 
 def differing(one: Outcome, other: Outcome) -> tuple[str, str] | None:
     """The first line of each in which they differ; None: they do not."""
-    for left, right in zip_longest([*one.calls, *one.refusal], [*other.calls, *other.refusal], fillvalue="(nothing)"):
+    for left, right in zip_longest(
+        [*one.calls, *one.refusal, *one.parameters],
+        [*other.calls, *other.refusal, *other.parameters],
+        fillvalue="(nothing)",
+    ):
         if left != right:
             return left, right
     return None
 
 
-def write(seed: int, folder: Path) -> tuple[Path, bool]:
-    """The program of a seed, and whether it is for several spindles."""
+def pieces(seed: int) -> tuple[str, Machine]:
     spindles = seed % 4 == 1
-    program = folder / "program.ngc"
-    program.write_text(Generator(seed, SPINDLES if spindles else 1).program(mistake=seed % 3 == 0))
-    return program, spindles
+    text = Generator(seed, SPINDLES if spindles else 1).program(mistake=seed % 3 == 0)
+    return text, SEVERAL_SPINDLES if spindles else PLAIN
+
+
+GENERATORS: dict[str, Callable[[int], tuple[str, Machine]]] = {
+    "pieces": pieces,
+    "words": lambda seed: (Wordy(seed, wrong=seed % 3 == 0).program(), machine(seed)),
+    "contours": lambda seed: (Contour(seed).program(), PLAIN),
+}
+"""A program and its machine from a seed."""
 
 
 KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str]], ...] = tuple(
@@ -156,15 +179,17 @@ def explained(left: str, right: str, one: Outcome, other: Outcome, lathe: bool =
     return ""
 
 
-def run(seeds: range) -> Iterator[tuple[int, str, str, str]]:
+def run(seeds: range, generator: str = "pieces") -> Iterator[tuple[int, str, str, str]]:
     """(seed, name of the known difference, their line, our line) of each program that differs."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        program = folder / "program.ngc"
         for seed in seeds:
-            program, spindles = write(seed, folder)
-            lathe = " endsub\ng7" in program.read_text()
+            text, machine = GENERATORS[generator](seed)
+            program.write_text(text)
+            lathe = " endsub\ng7" in text
             try:
-                one, other = theirs(folder, program, spindles), ours(folder, program, spindles)
+                one, other = theirs(folder, program, machine), ours(folder, program, machine)
             except subprocess.TimeoutExpired:
                 yield seed, "LinuxCNC never ends in a lathe cycle" if lathe else "", "(never ends)", ""
                 continue
@@ -178,9 +203,11 @@ def main() -> int:
     chosen = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     chosen.add_argument("--programs", type=int, default=10_000)
     chosen.add_argument("--first", type=int, default=1, help="first seed")
+    chosen.add_argument("--generator", choices=sorted(GENERATORS), default="pieces")
     arguments = chosen.parse_args()
     reasons: Counter[str] = Counter()
-    for seed, reason, left, right in run(range(arguments.first, arguments.first + arguments.programs)):
+    seeds = range(arguments.first, arguments.first + arguments.programs)
+    for seed, reason, left, right in run(seeds, arguments.generator):
         reasons[reason or "unexplained"] += 1
         print(f"seed {seed} {reason}\n  LinuxCNC {left}\n  here     {right}", flush=True)
     print(f"{arguments.programs} programs, {reasons.total()} differ: {dict(reasons)}")

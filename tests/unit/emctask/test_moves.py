@@ -10,7 +10,7 @@ from rs274ngc.canon import (
     CANON_UNITS_INCHES,
     CANON_UNITS_MM,
 )
-from rs274ngc.moves import BLEND, FEED, STOP, TRAVERSE, MoveCanon, nurbs_point
+from rs274ngc.moves import BLEND, FEED, STOP, TRAVERSE, MoveCanon
 
 ORIGIN = (0.0,) * 6
 
@@ -107,7 +107,7 @@ def test_joining_and_blending_together_stay_within_the_path_tolerance():
     canon.set_feed_rate(1000.0)
     canon.set_motion_control_mode(CANON_CONTINUOUS, 0.02)
     canon.set_naivecam_tolerance(0.02)
-    for x, y in ((1.0, 0.00003), (2.0, 0.0), (3.0, 0.0002), (4.0, 0.0)):  # 0.0002 is more than its share of the tolerance
+    for x, y in ((1.0, 0.00003), (2.0, 0.0), (3.0, 0.0002), (4.0, 0.0)):  # 0.0002: above its share of the tolerance
         feed(canon, x=x, y=y)
     canon.flush()
     assert [x for x, _ in canon.lines] == [2.0, 3.0, 4.0]
@@ -161,10 +161,3 @@ def test_a_flat_arc_joins_with_lines_when_the_tolerance_allows_it(canon):
     canon.flush()
     assert canon.arcs == []
     assert canon.lines[-1][2] == 11.0
-
-
-def test_a_nurbs_with_equal_weights_and_order_two_is_its_polygon():
-    points = [(0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0)]
-    knots = [0.0, 0.0, 1.0, 2.0, 2.0]
-    assert nurbs_point(points, knots, 2, 0.5) == (0.5, 0.0)
-    assert nurbs_point(points, knots, 2, 2.0) == (1.0, 1.0)
