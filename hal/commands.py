@@ -338,8 +338,8 @@ def lock(session: Session, args: list[str]) -> None:
 
 @command("unlock", most=1, usage="unlock [all|tune]")
 def unlock(session: Session, args: list[str]) -> None:
-    """Unlock the HAL: `all` (or nothing) wholly, `tune` for setting parameters."""
-    session.hal.segment.locks = _lock_level(args, {"all": LOCK_NONE, "tune": LOCK_TUNE})
+    """Unlock the HAL: `all` (or nothing) wholly, `tune` what `lock tune` locks."""
+    session.hal.segment.locks &= ~_lock_level(args, {"all": LOCK_ALL, "tune": LOCK_TUNE})
 
 
 def _lock_level(args: list[str], levels: dict[str, int]) -> int:

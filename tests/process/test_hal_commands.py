@@ -239,3 +239,10 @@ def test_a_latency_histogram_is_drawn_as_a_picture(own_namespace: str, picture: 
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert is_picture(picture)
+
+
+def test_unlock_takes_away_what_lock_of_the_same_name_gave(own_namespace: str, tmp_path: Path) -> None:
+    orders = ["lock tune", "unlock tune", "lock all", "unlock tune", "unlock", "lock tune", "unlock all"]
+    done = script(tmp_path, "".join(f"{order}\nstatus lock\n" for order in orders))
+    values = [int(line.split()[3]) for line in done.stdout.splitlines() if "lock value" in line]
+    assert values == [3, 0, 255, 252, 0, 3, 0], done.stdout + done.stderr
