@@ -108,7 +108,7 @@ cdef class Core:
             m.axis[n].locking_joint = -1
         for n in range(MAX_SPINDLES):
             m.spindle[n].scale = m.spindle[n].net_scale = 1.0
-            m.spindle[n].at_speed = m.spindle[n].brake = 1
+            m.spindle[n].at_speed = 1
             m.spindle[n].max_speed, m.spindle[n].max_reverse_speed = UNLIMITED_SPINDLE, -UNLIMITED_SPINDLE
         refresh_planner_limits(m)
         m.homing.update_homed(m)

@@ -5,7 +5,7 @@ from libc.stdio cimport snprintf
 
 from emcmot._messages cimport MAX_AXES, MAX_JOINTS
 from emcmot.free_planner cimport fastest_stoppable
-from emcmot.joint cimport command_joint
+from emcmot.joint cimport command_joint, limit_own_moves
 from emcmot.kins.kinematics cimport KINEMATICS_IDENTITY, KINEMATICS_INVERSE_ONLY, KINS_JOINTS, Kinematics
 from emcmot.report cimport TEXT_SIZE, report
 from emcmot.state cimport Axis, Joint, Motion
@@ -118,6 +118,7 @@ cdef int align_joints(Motion* m) noexcept nogil:
     for n in range(m.kins.joints):
         joint = &m.joint[n]
         if fabs(joint.pos_cmd - joints[n]) > ALIGNED:
+            limit_own_moves(joint, 1.0)
             joint.free.target = joints[n]
             joint.free.enabled = 1
             joint.free.active = 1

@@ -34,6 +34,7 @@ def configure_motion(motion: MotionClient, config: MachineConfig) -> None:
             minLimit=-spindle.max_reverse,
             maxLimit=-spindle.min_reverse,
         )
+        motion.send(MotCommand.SPINDLE_OFF, spindle=number)  # engages its brake
 
 
 def path_limits(motion: MotionClient, config: MachineConfig) -> None:

@@ -87,3 +87,10 @@ def test_a_line_that_is_wrong_at_once_changes_nothing_but_drops_those_behind_it(
     assert (status.flood, status.spindle[0]["speed"], status.gcodes[3:], status.mcodes[2:]) == before
     assert status.position[0] == 0.0
     assert desk.mdi("G53 G0 X1") == DONE
+
+
+def test_the_brake_holds_a_spindle_that_nobody_has_started(desk):
+    desk.until(lambda s: s.spindle[0]["brake"] == 1, "the brake")
+    desk.ready(linuxcnc.MODE_MANUAL)
+    desk.command.spindle(linuxcnc.SPINDLE_FORWARD, 500)
+    desk.until(lambda s: s.spindle[0]["brake"] == 0, "the brake let go")

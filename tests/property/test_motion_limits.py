@@ -11,6 +11,7 @@ from nml.emc.emcmot import MotCommand as C
 from tests.support.mill import VEL, bring_to, configure
 
 ROUNDING = 1e-6
+JERK_ROUNDING = 1e-4
 
 
 def _line(m: Motion, rng: random.Random) -> None:
@@ -149,9 +150,12 @@ def _random_machine(coordinates: str, rng: random.Random) -> Motion:
 
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.parametrize("coordinates", ["xyz", "xyyz"])
-def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates: str) -> None:
+@pytest.mark.parametrize("jerk", [0.0, 2e4])
+def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates: str, jerk: float) -> None:
     rng = random.Random(seed)
     m = _random_machine(coordinates, rng)
+    m.send(C.SET_JERK, jerk=jerk)
+    m.send(C.SET_PLANNER_TYPE, mode=jerk > 0.0)
     for _ in range(120):
         action = rng.choice(ACTIONS)
         action(m, rng)
@@ -161,6 +165,7 @@ def test_random_commands_at_random_times_keep_every_limit(seed: int, coordinates
         m.errors()
         assert m.worst_vel <= 1.0 + ROUNDING, (seed, action)
         assert m.worst_acc <= 1.0 + ROUNDING, (seed, action)
+        assert m.worst_jerk <= 1.0 + JERK_ROUNDING, (seed, action)
 
 
 def _stop(m: Motion, rng: random.Random) -> bool:

@@ -382,15 +382,6 @@ def test_spindle_pins_tell_speed_and_direction(speed: float, scale: float, out: 
     assert not m["spindle.0.on"]
 
 
-def test_the_brake_holds_a_spindle_that_nobody_has_started() -> None:
-    m = mill("off")
-    assert m["spindle.0.brake"]
-    assert m.status.spindle_status[0].brake
-    m.send(C.SPINDLE_ON, vel=600.0)
-    m.step()
-    assert not m["spindle.0.brake"]
-
-
 def test_constant_surface_speed_follows_the_radius() -> None:
     m = mill("coord")
     line(m, 50)
