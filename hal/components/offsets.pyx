@@ -1,4 +1,4 @@
-"""Components that offset positions or turn wheel counts into movement: moveoff, eoffset_per_angle, anglejog. See ``declare.py``."""
+"""Components that offset positions or turn counts into movement: moveoff, eoffset_per_angle, anglejog, gantry. See ``declare.py``."""
 
 from libc.math cimport M_PI, copysign, cos, fabs, fmod, sin
 from libc.stdint cimport int32_t, uint8_t
@@ -317,3 +317,60 @@ declare("anglejog", "Wheel counts as movement of two axes at an angle", sizeof(A
     pin_out(FLOAT, "current-angle-degrees"), pin_out(FLOAT, "current-mag", "units along the vector"),
     pin_out(FLOAT, "current-vel", "per s"),
 ], {"": <size_t>&anglejog})
+
+
+# ---- gantry ----
+
+cdef enum:
+    GANTRY_JOINTS = 7
+
+cdef struct Gantry:
+    hal_pin pos_cmd[GANTRY_JOINTS]
+    hal_pin pos_fb[GANTRY_JOINTS]
+    hal_pin home[GANTRY_JOINTS]
+    hal_pin offset[GANTRY_JOINTS]
+    hal_pin position_cmd, position_fb, all_home, limit, search_vel
+    size_t joints  # the personality
+    size_t measured  # the joint whose feedback is the gantry's
+    double old_cmd
+
+cdef void gantry_read(Gantry* s, long period) noexcept nogil:
+    """While some switches are closed and others not yet, the feedback is that of a joint that is still to come."""
+    cdef size_t i, count = 0, open_one = 0
+    for i in range(s.joints):
+        if at(s.home[i]).b:
+            count += 1
+        else:
+            open_one = i
+    if count == s.joints:
+        at(s.all_home).b = 1
+    elif count == 0:
+        at(s.all_home).b = 0
+    at(s.limit).b = count > 0
+    if at(s.limit).b and not at(s.all_home).b:
+        s.measured = open_one
+    at(s.position_fb).f = at(s.pos_fb[s.measured]).f + at(s.offset[s.measured]).f
+
+cdef void gantry_write(Gantry* s, long period) noexcept nogil:
+    """Joints follow the command; while the gantry searches, one with a closed switch stands still."""
+    cdef double step = at(s.position_cmd).f - s.old_cmd
+    cdef bint searching = step * at(s.search_vel).f > 0.0 and at(s.limit).b and not at(s.all_home).b
+    cdef size_t i
+    s.old_cmd = at(s.position_cmd).f
+    for i in range(s.joints):
+        if searching and at(s.home[i]).b:
+            at(s.offset[i]).f += step
+        at(s.pos_cmd[i]).f = at(s.position_cmd).f - at(s.offset[i]).f
+
+cdef int gantry_joints(int personality):
+    return min(max(personality, 1), GANTRY_JOINTS)
+
+declare("gantry", "Several joints driven as one axis, each homed to its own switch", sizeof(Gantry), [
+    pin_out(FLOAT, "joint.{:02}.pos-cmd", "to the drive", count=GANTRY_JOINTS, personal=gantry_joints),
+    pin_in(FLOAT, "joint.{:02}.pos-fb", "from the encoder", count=GANTRY_JOINTS, personal=gantry_joints),
+    pin_in(BIT, "joint.{:02}.home", "home switch", count=GANTRY_JOINTS, personal=gantry_joints),
+    pin_out(FLOAT, "joint.{:02}.offset", "how far it stays behind the command", count=GANTRY_JOINTS, personal=gantry_joints),
+    pin_in(FLOAT, "position-cmd", "from motion"), pin_out(FLOAT, "position-fb", "to motion"),
+    pin_out(BIT, "home", "true from when all switches are closed until all are open"), pin_out(BIT, "limit", "a switch is closed"),
+    pin_in(FLOAT, "search-vel", "HOME_SEARCH_VEL of the INI file: its sign counts"),
+], {"read": <size_t>&gantry_read, "write": <size_t>&gantry_write}, personality=2, keep_personality=True)

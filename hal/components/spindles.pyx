@@ -1,4 +1,4 @@
-"""Components for spindles and torches: spindle, spindle_monitor, thc. See ``declare.py``."""
+"""Components for spindles and torches: spindle, spindle_monitor, thc, thcud. See ``declare.py``."""
 
 from libc.math cimport fabs
 from libc.stdint cimport uint8_t, uint32_t
@@ -164,3 +164,43 @@ declare("thc", "Height of a plasma torch by its voltage", sizeof(Thc), [
     param_rw(FLOAT, "velocity-tol", "percent that the torch may be slower and still correct"),
     param_rw(FLOAT, "voltage-tol", "volts off without correction"), param_rw(FLOAT, "correction-vel", "units of Z in a period"),
 ], {"": <size_t>&thc}, most=1, takes_names=False, instance="thc")
+
+
+# ---- thcud ----
+
+cdef struct ThcUpDown:
+    hal_pin torch_up, torch_down, current_vel, requested_vel, torch_on, arc_ok, enable, z_pos_in
+    hal_pin z_pos_out, z_fb_out, cur_offset, vel_status, removing_offset, velocity_tol, correction_vel
+    double offset  # of Z
+    double old_z
+
+cdef void thcud(ThcUpDown* s, long period) noexcept nogil:
+    cdef double z = at(s.z_pos_in).f, slow, back
+    if at(s.enable).b:
+        slow = at(s.requested_vel).f * (1.0 - at(s.velocity_tol).f * 0.01)
+        at(s.vel_status).b = at(s.current_vel).f > 0.0 and at(s.current_vel).f >= slow
+        at(s.removing_offset).b = 0
+        if at(s.torch_on).b and at(s.arc_ok).b and at(s.vel_status).b:
+            if at(s.torch_up).b:
+                s.offset += at(s.correction_vel).f
+            if at(s.torch_down).b:
+                s.offset -= at(s.correction_vel).f
+        elif not at(s.torch_on).b and z > s.old_z and s.offset != 0.0:
+            back = z - s.old_z  # give the correction back on the way up, no faster than Z moves
+            at(s.removing_offset).b = 1
+            s.offset -= min(max(s.offset, -back), back)
+    s.old_z = z
+    at(s.z_pos_out).f = z + s.offset if at(s.enable).b else z
+    at(s.z_fb_out).f = z
+
+declare("thcud", "Height of a plasma torch by an up and a down signal", sizeof(ThcUpDown), [
+    pin_in(BIT, "torch-up", "the torch is too low"), pin_in(BIT, "torch-down", "the torch is too high"),
+    pin_in(FLOAT, "current-vel", "from motion.current-vel"), pin_in(FLOAT, "requested-vel", "from motion.requested-vel"),
+    pin_in(BIT, "torch-on", "from spindle.N.on"), pin_in(BIT, "arc-ok"),
+    pin_in(BIT, "enable", "false: Z passes through"), pin_in(FLOAT, "z-pos-in", "from axis.N.motor-pos-cmd"),
+    pin_out(FLOAT, "z-pos-out", "z-pos-in with the correction"), pin_out(FLOAT, "z-fb-out", "feedback without it"),
+    pin_out(FLOAT, "cur-offset", "always 0"), pin_out(BIT, "vel-status", "fast enough to correct"),
+    pin_out(BIT, "removing-offset", "the correction is given back now"),
+    param_rw(FLOAT, "velocity-tol", "percent that the torch may be slower and still correct"),
+    param_rw(FLOAT, "correction-vel", "units of Z in a period"),
+], {"": <size_t>&thcud}, most=1, takes_names=False, instance="thcud")

@@ -297,6 +297,29 @@ CASES = {
         lambda chance: ([i * 7 % 360, i % 90 > 20, i < 370, i // 90] for i in range(SAMPLES)),
         "e.fmult=4 e.radius-ref=10 e.start-angle=15.3",
     ),
+    "thcud": Case(
+        "thcud", "thcud",
+        "b:thcud.torch-up b:thcud.torch-down f:thcud.current-vel f:thcud.requested-vel b:thcud.torch-on b:thcud.arc-ok "
+        "b:thcud.enable f:thcud.z-pos-in",
+        "f:thcud.z-pos-out f:thcud.z-fb-out f:thcud.cur-offset b:thcud.vel-status",
+        lambda chance: (  # with the torch on: how the stock one takes corrections back is not as documented
+            [chance.random() < 0.4, chance.random() < 0.3, (9, 3, 0, 10.5)[i // 11 % 4], 10 - i // 199 * 10,
+             1, i // 5 % 6 > 0, 1, chance.uniform(-1.0, 1.0)] for i in range(SAMPLES)
+        ), "thcud.velocity-tol=20 thcud.correction-vel=0.05",
+    ),
+    "gantry": Case(
+        "gantry personality=2", "gantry.0.read gantry.0.write",
+        "f:gantry.0.position-cmd f:gantry.0.search-vel " + " ".join(
+            f"f:gantry.0.joint.0{i}.pos-fb b:gantry.0.joint.0{i}.home" for i in range(2)
+        ),
+        "f:gantry.0.position-fb b:gantry.0.home b:gantry.0.limit " + " ".join(
+            f"f:gantry.0.joint.0{i}.pos-cmd f:gantry.0.joint.0{i}.offset" for i in range(2)
+        ),
+        lambda chance: (
+            [0.5 * (i // 8 % 3) * i, i // 40 % 3 - 1,
+             *(word for n in range(2) for word in (100 * n + i, chance.random() < 0.5))] for i in range(SAMPLES)
+        ),
+    ),
     "limit3": Case(
         "limit3", "limit3.0", "f:limit3.0.in b:limit3.0.enable", "f:limit3.0.out",
         lambda chance: ([40.0 if i // 100 % 2 else -7.3, i < 350] for i in range(SAMPLES)),

@@ -37,7 +37,7 @@ COMPONENTS = """
     streamer:cfg=fbsu:depth=9 sum2 supply:num_chan=1 time timedelay timedelta toggle toggle2nist tof ton tp
     tristate_bit tristate_float updown wcomp xor2
     anglejog axistest eoffset_per_angle message:names=m:messages=text moveoff:personality=2 sim_axis_hardware
-    spindle_monitor steptest thc watchdog:num_inputs=2 xhc_hb04_util
+    spindle_monitor steptest thc thcud gantry:personality=3 watchdog:num_inputs=2 xhc_hb04_util
 """
 NOT_COMPARED = (".time", ".tmax", ".threadbeat")  # times, and what 2.9 has not yet
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)

@@ -152,3 +152,42 @@ def test_a_trial_runs_to_and_fro_and_comes_back(component: Load, name: str) -> N
     assert min(places) == pytest.approx(-0.5, abs=2e-3)
     assert places[-1] == pytest.approx(0.0, abs=2e-3)
     assert not trial.get("running")
+
+
+def test_thcud_takes_its_correction_back_on_the_way_up_no_faster_than_z(component: Callable[..., Bench]) -> None:
+    bench = component("thcud", instance="thcud")
+    bench.set(enable=1, torch_on=1, arc_ok=1, current_vel=10.0, requested_vel=10.0, torch_up=1, correction_vel=0.25)
+    bench.run("thcud", 4)
+    assert (bench.get("z-pos-out"), bench.get("vel-status")) == (1.0, True)
+    bench.set(torch_on=0)
+    heights = []
+    for z in (0.0, -0.5, 0.0, 0.5, 2.0, 2.1):
+        bench.set(z_pos_in=z)
+        bench.run("thcud")
+        heights.append((bench.get("z-pos-out") - z, bench.get("removing-offset"), bench.get("z-fb-out") == z))
+    assert heights == [
+        (1.0, False, True), (1.0, False, True), (0.5, True, True), (0.0, True, True), *[(0.0, False, True)] * 2
+    ]  # fmt: skip
+
+
+def test_thcud_lets_z_pass_when_it_is_off(component: Callable[..., Bench]) -> None:
+    bench = component("thcud", instance="thcud")
+    bench.set(torch_on=1, arc_ok=1, current_vel=10.0, requested_vel=10.0, torch_up=1, correction_vel=0.25, z_pos_in=3.0)
+    bench.run("thcud", 4)
+    assert bench.get("z-pos-out") == 3.0
+
+
+def test_a_gantry_holds_the_joint_whose_switch_closes_first(component: Callable[..., Bench]) -> None:
+    bench = component("gantry", "personality=2")
+    bench.set(search_vel=-1.0)
+    seen = []
+    switches = ((0, 0), (0, 0), (1, 0), (1, 0), (1, 1), (0, 1), (0, 0))
+    for command, (left, right) in zip((0.0, -1.0, -2.0, -3.0, -4.0, -3.0, -2.0), switches, strict=True):
+        bench.set(**{"position_cmd": command, "joint.00.home": left, "joint.01.home": right})
+        bench.run("gantry.0.read")
+        bench.run("gantry.0.write")
+        seen.append(tuple(map(bench.get, ("joint.00.pos-cmd", "joint.01.pos-cmd", "home", "limit"))))
+    assert seen == [
+        (0.0, 0.0, False, False), (-1.0, -1.0, False, False), (-1.0, -2.0, False, True), (-1.0, -3.0, False, True),
+        (-2.0, -4.0, True, True), (-1.0, -3.0, True, True), (0.0, -2.0, False, False),
+    ]  # fmt: skip
