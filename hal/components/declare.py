@@ -131,9 +131,11 @@ class Declaration:
             raise HalError(f"{self.name}: {self.counted_by}= and names= cannot be given together")
 
     def instances(self, args: dict[str, str]) -> list[str]:
-        """The instances' names."""
-        if "names" in args:
+        """The instances' names; ``names=`` without any is not given, where a count may be left out too."""
+        if args.get("names") or ("names" in args and self.counted_by != "count"):
             names = [name for name in args["names"].split(",") if name]
+            if not names:
+                raise HalError(f"{self.name}: names={args['names']}: at least one name would be right")
             if self.most is not None and len(names) > self.most:
                 raise HalError(f"{self.name}: {len(names)} names; up to {self.most} are possible")
             return names

@@ -103,6 +103,15 @@ def test_every_component_has_a_text() -> None:
     assert [name for name, declaration in DECLARED.items() if not declaration.doc] == []
 
 
+def test_names_without_any_name_are_not_given_or_refused(host: Host) -> None:
+    host.load("or2", ["names="])
+    assert host.hal.find("or2.0.out") is not None
+    with pytest.raises(HalError, match="pid: names=: at least one name"):
+        host.load("pid", ["names="])
+    with pytest.raises(HalError, match="and2: names=,: at least one name"):
+        host.load("and2", ["names=,"])
+
+
 def test_more_names_than_channels_are_refused(host: Host) -> None:
     with pytest.raises(HalError, match="9 names; up to 8 are possible"):
         host.load("encoder", ["names=" + ",".join(f"e{n}" for n in range(9))])
