@@ -70,10 +70,7 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     if tolerance == 0.0:
         return corner
     wanted = _trim_for_speed(tp, a, b, corner.ratio, jump)
-    if sharpness < SLIGHT:
-        wanted *= 16.0
-    elif tolerance < INFINITY:
-        wanted *= 2.0
+    wanted *= 16.0 if sharpness < SLIGHT else 2.0
     along = fmin(fmin(room, 0.5 * b.length / corner.ratio), fmin(4.0 * tolerance / sharpness, wanted))
     if a.kind == TP_ARC:
         along = fmin(along, ARC_BLEND_ANGLE / fabs(a.omega))

@@ -34,6 +34,7 @@ cdef enum Verdict:
 cdef double ROUNDING = 4e-15     # of u, relative to the length of its span
 cdef double STANDING = 0.1    # jerk dt^2: a held machine that is no faster stands
 cdef double LANDING = 0.2     # jerk dt^3 from the end, the rest of the way is gone in one period
+cdef double EARLY = 0.5       # jerk dt^3 before a slower stretch, its speed is reached: periods round the braking curve
 cdef double ALIKE = 0.85         # ratio of limits from which two spans may be one stretch
 cdef double SHORT = 0.04         # of the way that braking takes: shorter spans are taken together anyway
 cdef double REACH = 1.25         # the known path should be longer than braking takes, by this
@@ -161,6 +162,7 @@ cdef Verdict _judge(TpState* tp, double v, double a, double way) noexcept nogil:
     cdef const Stretch* here = _stretch(tp, 0)
     cdef const Stretch* following
     cdef double distance = here.length - way, push = here.push, jerk = here.jerk, slower, rest, room
+    cdef double early = EARLY * here.jerk * tp.dt * tp.dt * tp.dt
     cdef int k
     for k in range(tp.stretch_count):
         room = fmax(0.0, distance - v * tp.dt)       # jerk changes between periods only: be there a period early
@@ -174,6 +176,7 @@ cdef Verdict _judge(TpState* tp, double v, double a, double way) noexcept nogil:
             return FEASIBLE
         following = _stretch(tp, k + 1)
         slower = fmin(jerk, following.jerk)
+        room = fmax(0.0, room - early)
         if _meeting_way(v, a, following.now, push, jerk, slower) > room:
             return TOO_FAST
         if v + copysign(0.5 * a * a / jerk, a) <= following.now and not _relaxed(v, a, following.push, jerk, room):
@@ -206,20 +209,33 @@ cdef double _choose(TpState* tp, double v, double target) noexcept nogil:
     cdef double low = -fmin(here.push, _ramp(fmax(0.0, v + 0.5 * tp.a * dt), here.jerk, dt))
     cdef double high = tp.a + change, middle
     cdef Verdict verdict
-    cdef int k
     wanted = fmax(tp.a - change, fmin(high, wanted))
     low = fmin(wanted, fmax(tp.a - change, low))
     verdict = _outcome(tp, v, wanted)
     if verdict == FEASIBLE:
         return wanted
+    middle = _nearest(tp, v, low, high, wanted, verdict, 0)
+    if _outcome(tp, v, middle) != FEASIBLE and low < wanted:
+        middle = _nearest(tp, v, low, wanted, wanted, TOO_FAST, 1)
+    return middle
+
+
+cdef double _nearest(TpState* tp, double v, double low, double high, double wanted, Verdict verdict, int stop) noexcept nogil:
+    """The feasible acceleration from `low` to `high` that is nearest to `wanted`, of which `verdict` is known.
+
+    What is TOO_HARD for the stretch ahead may still be right for a `stop` before it, and then less braking is not.
+    """
+    cdef int halvings = HALVINGS if v > _stretch(tp, 0).jerk * tp.dt * tp.dt else SLOW_HALVINGS
+    cdef double middle
+    cdef int k
     if verdict == TOO_FAST:
         high = wanted
     else:
         low = wanted
-    for k in range(HALVINGS if v > change * dt else SLOW_HALVINGS):
+    for k in range(halvings):
         middle = 0.5 * (low + high)
         verdict = _outcome(tp, v, middle)
-        if verdict == TOO_FAST or (verdict == FEASIBLE and middle > wanted):
+        if verdict == TOO_FAST or (verdict == TOO_HARD and stop) or (verdict == FEASIBLE and middle > wanted):
             high = middle
         else:
             low = middle

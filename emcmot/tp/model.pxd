@@ -101,6 +101,7 @@ ctypedef struct Span:
     double steady            # jerk-limited motion: largest du/dt,
     double push              # largest |d2u/dt2|
     double jerk              # and largest |d3u/dt3|
+    double along             # share of an axis's jerk that changes of the speed may use
     double dq0[LIMITED]      # derivatives by u at both ends, for the n axes of `axis`; of lines only where they are asked for
     double dq1[LIMITED]
     double ddq0[LIMITED]

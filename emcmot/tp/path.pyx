@@ -16,7 +16,7 @@ from emcmot.tp.joints cimport Curve, add_joints
 from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
 from emcmot.tp.model cimport AXES, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
-from emcmot.tp.smooth cimport limit_smooth, smoothing_tolerance
+from emcmot.tp.smooth cimport ALONG, bend_speed, first_speed, limit_smooth, smoothing_tolerance
 from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FS_ENABLED
 
 cdef enum:
@@ -167,7 +167,25 @@ cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
         _reopen(tp, last)
         return
     corner = decide_corner(tp, a, b, a.length - fmax(tp.body_end, a.trim_start))
+    if tp.smooth and corner.trim > 0.0 and _crawls(tp, a, b, &corner):
+        corner.trim = 0.0
+        corner.stop = 1
     _set_corner(tp, last, corner)
+
+
+cdef int _crawls(const TpState* tp, const Segment* a, const Segment* b, const Corner* corner) noexcept nogil:
+    """Whether a smooth blend would be slower than the first period after a stop, which is all the same to the machine."""
+    cdef double before[AXES]
+    cdef double after[AXES]
+    cdef double dq[AXES]
+    cdef double bend[AXES]
+    cdef double unused[AXES]
+    derivatives(a, a.length, before, unused)
+    derivatives(b, 0.0, after, unused)
+    blend_derivatives(a, b, corner, corner.trim, dq, bend)
+    return bend_speed(tp, fmin(smoothing_tolerance(a), smoothing_tolerance(b)), bend) < fmax(
+        first_speed(tp, before), first_speed(tp, after)
+    )
 
 
 cdef void _set_corner(TpState* tp, int64_t last, Corner corner) noexcept nogil:
@@ -273,6 +291,7 @@ cdef Span* _new_span(TpState* tp, int kind, int64_t seg, double u0, double h) no
     span.acc = INFINITY
     span.tight = 1.0
     span.beta = 0.0
+    span.along = ALONG
     return span
 
 
@@ -281,6 +300,9 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     cdef Segment* seg = _seg(tp, index)
     cdef double way = tp.body_goal - tp.body_end, h = way
     cdef int kind = SPAN_LINE, count, k
+    if tp.smooth and seg.kind != TP_ARC and tp.inverse == NULL:
+        _add_smooth_line(tp, index)
+        return
     if seg.kind == TP_ARC or tp.inverse != NULL:
         kind = SPAN_CURVE
         h = fmin(h, fmax(4.0 * tp.dt * seg.vel_max, _braking_way(tp, seg)))
@@ -293,6 +315,29 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     for k in range(count):
         _limit_body(tp, seg, _new_span(tp, kind, index, tp.body_end + k * h, h))
     tp.body_end += count * h
+
+
+cdef void _add_smooth_line(TpState* tp, int64_t index) noexcept nogil:
+    """Spans of a straight move where jerk is limited: what is next to a bend shares the jerk with it, the middle does not."""
+    cdef Segment* seg = _seg(tp, index)
+    cdef double way = tp.body_goal - tp.body_end, reach = seg.vel_max * tp.window * tp.dt
+    cdef double pieces[3]
+    cdef Span* span
+    cdef int k
+    pieces[0] = 0.0 if _starts_at_rest(tp, index) else fmin(reach, way)
+    pieces[2] = 0.0 if tp.corner_known and seg.exit_stop else fmin(reach, way - pieces[0])
+    pieces[1] = way - pieces[0] - pieces[2]
+    for k in range(3):
+        if pieces[k] > NO_WAY * seg.length:
+            span = _new_span(tp, SPAN_LINE, index, tp.body_end, pieces[k])
+            span.along = 1.0 if k == 1 else ALONG
+            _limit_body(tp, seg, span)
+            tp.body_end += pieces[k]
+    tp.body_end = tp.body_goal
+
+
+cdef int _starts_at_rest(const TpState* tp, int64_t index) noexcept nogil:
+    return _seg(tp, index).trim_start == 0.0 and (index <= tp.seg_head or _seg(tp, index - 1).exit_stop)
 
 
 cdef double _joint_way(TpState* tp, const Segment* seg, int64_t index, double h) noexcept nogil:

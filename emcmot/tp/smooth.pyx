@@ -5,7 +5,8 @@ curvature, and a jump of the acceleration becomes a jerk of that jump / T. Avera
 acceleration, in each axis. From the path they are off by no more than T^2 / 24 times the acceleration across it.
 
 An axis spends its jerk by shares: most of it on changes of the acceleration along the path (`jerk` of a span), a part each
-way on its bends, a tenth on the change of speed within them. T is chosen at rest, for the tolerance of the move that starts, so that
+way on its bends, a tenth on the change of speed within them. On straight stretches that are further from any bend than T lasts,
+changes of the acceleration along the path have all of it. T is chosen at rest, for the tolerance of the move that starts, so that
 both bounds on bends, that of jerk and that of the distance from the path, bind at the same speed.
 Called by tp (choice), path (limits of spans) and advance (positions).
 """
@@ -16,7 +17,7 @@ from libc.string cimport memcpy
 from emcmot.tp.model cimport AXES, WINDOW, Segment, Span, TpState
 from emcmot.tp.tp cimport TP_TERM_BLEND
 
-cdef double ALONG = 0.6              # shares of an axis's jerk: along the path,
+ALONG = 0.6                          # shares of an axis's jerk: along the path,
 cdef double BEND = 0.15              # for a bend; two may follow each other, to and fro
 cdef double MIXED = 0.1              # 3 q'' v a
 cdef double STEADY_SHARE = 0.8       # of an axis's acceleration that bends may use; speed needs the rest to change
@@ -60,6 +61,27 @@ cdef double smoothing_tolerance(const Segment* seg) noexcept nogil:
     return SMOOTHING_SHARE * (seg.tolerance - seg.deviation)
 
 
+cdef double bend_speed(const TpState* tp, double tolerance, const double* bend) noexcept nogil:
+    """Largest speed where the second derivative by u is `bend`."""
+    cdef double time = tp.window * tp.dt, w = INFINITY, across = 0.0
+    cdef int i
+    for i in range(AXES):
+        if bend[i] != 0.0:
+            w = fmin(w, fmin(STEADY_SHARE * tp.amax[i], BEND * tp.jmax[i] * time) / fabs(bend[i]))
+            across += bend[i] * bend[i]
+    return sqrt(fmin(w, SPREAD * tolerance / (sqrt(across) * time * time))) if across > 0.0 else INFINITY
+
+
+cdef double first_speed(const TpState* tp, const double* rate) noexcept nogil:
+    """Speed that the first period of a start brings where the first derivative by u is `rate`."""
+    cdef double jerk = INFINITY
+    cdef int i
+    for i in range(AXES):
+        if rate[i] != 0.0:
+            jerk = fmin(jerk, fmin(ALONG * tp.jmax[i], tp.amax[i] / tp.dt) / fabs(rate[i]))
+    return jerk * tp.dt * tp.dt
+
+
 cdef void limit_smooth(const TpState* tp, double tolerance, Span* span) noexcept nogil:
     """Largest speed, acceleration and jerk along a span whose derivatives and cap are known."""
     cdef double time = tp.window * tp.dt, w = span.cap, rate, bend, across = 0.0, a, jerk, v
@@ -83,7 +105,7 @@ cdef void limit_smooth(const TpState* tp, double tolerance, Span* span) noexcept
         bend = fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j]))
         if rate > 0.0:
             a = fmin(a, (tp.amax[i] * span.tight - bend * w) / rate)
-            jerk = fmin(jerk, ALONG * tp.jmax[i] / rate)
+            jerk = fmin(jerk, span.along * tp.jmax[i] / rate)
         if bend > 0.0:
             a = fmin(a, MIXED * tp.jmax[i] / (3.0 * bend * v))
     span.steady = v
