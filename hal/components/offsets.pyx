@@ -325,11 +325,11 @@ cdef enum:
     GANTRY_JOINTS = 7
 
 cdef struct Gantry:
-    hal_pin pos_cmd[GANTRY_JOINTS]
-    hal_pin pos_fb[GANTRY_JOINTS]
-    hal_pin home[GANTRY_JOINTS]
-    hal_pin offset[GANTRY_JOINTS]
-    hal_pin position_cmd, position_fb, all_home, limit, search_vel
+    hal_pin joint_pos_cmd[GANTRY_JOINTS]
+    hal_pin joint_pos_fb[GANTRY_JOINTS]
+    hal_pin joint_home[GANTRY_JOINTS]
+    hal_pin joint_offset[GANTRY_JOINTS]
+    hal_pin position_cmd, position_fb, home, limit, search_vel
     size_t joints  # the personality
     size_t measured  # the joint whose feedback is the gantry's
     double old_cmd
@@ -338,29 +338,29 @@ cdef void gantry_read(Gantry* s, long period) noexcept nogil:
     """While some switches are closed and others not yet, the feedback is that of a joint that is still to come."""
     cdef size_t i, count = 0, open_one = 0
     for i in range(s.joints):
-        if at(s.home[i]).b:
+        if at(s.joint_home[i]).b:
             count += 1
         else:
             open_one = i
     if count == s.joints:
-        at(s.all_home).b = 1
+        at(s.home).b = 1
     elif count == 0:
-        at(s.all_home).b = 0
+        at(s.home).b = 0
     at(s.limit).b = count > 0
-    if at(s.limit).b and not at(s.all_home).b:
+    if at(s.limit).b and not at(s.home).b:
         s.measured = open_one
-    at(s.position_fb).f = at(s.pos_fb[s.measured]).f + at(s.offset[s.measured]).f
+    at(s.position_fb).f = at(s.joint_pos_fb[s.measured]).f + at(s.joint_offset[s.measured]).f
 
 cdef void gantry_write(Gantry* s, long period) noexcept nogil:
     """Joints follow the command; while the gantry searches, one with a closed switch stands still."""
     cdef double step = at(s.position_cmd).f - s.old_cmd
-    cdef bint searching = step * at(s.search_vel).f > 0.0 and at(s.limit).b and not at(s.all_home).b
+    cdef bint searching = step * at(s.search_vel).f > 0.0 and at(s.limit).b and not at(s.home).b
     cdef size_t i
     s.old_cmd = at(s.position_cmd).f
     for i in range(s.joints):
-        if searching and at(s.home[i]).b:
-            at(s.offset[i]).f += step
-        at(s.pos_cmd[i]).f = at(s.position_cmd).f - at(s.offset[i]).f
+        if searching and at(s.joint_home[i]).b:
+            at(s.joint_offset[i]).f += step
+        at(s.joint_pos_cmd[i]).f = at(s.position_cmd).f - at(s.joint_offset[i]).f
 
 cdef int gantry_joints(int personality):
     return min(max(personality, 1), GANTRY_JOINTS)
