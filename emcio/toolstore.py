@@ -41,7 +41,7 @@ class ToolStore:
         Tools that this kind of changer cannot hold are left out; the result says which and why.
         """
         entries = self._empty()
-        entries[0] = Tool(pocketno=NO_POCKET) if self.random else self.entries[0]
+        entries[0] = Tool(pocketno=NO_POCKET) if self.random or not self.in_spindle else self.entries[0]
         taken: dict[int, int] = {}
         remarks = []
         for tool in tools:

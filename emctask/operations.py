@@ -112,7 +112,6 @@ def user_command(machine: Sequencer, payload: tuple[int, float, float]) -> None:
 @operation(before=MOTION_AND_IO)
 def program_stop(machine: Sequencer, payload: None) -> None:
     """M0, M60: pause until the operator resumes."""
-    machine.held = True
     machine.hooks.pause_here()
 
 
@@ -120,7 +119,6 @@ def program_stop(machine: Sequencer, payload: None) -> None:
 def optional_stop(machine: Sequencer, payload: None) -> None:
     """M1: pause if the optional stop is on now."""
     if machine.hooks.optional_stop:
-        machine.held = True
         machine.hooks.pause_here()
 
 
@@ -157,7 +155,7 @@ def io_command(machine: Sequencer, command: Any) -> None:
     machine.io.send(command)
 
 
-@operation(before=MOTION)
+@operation(before=MOTION_AND_IO)
 def io_command_at_rest(machine: Sequencer, command: Any) -> None:
     """Sent when the moves before it are done: coolant."""
     machine.io.send(command)

@@ -22,6 +22,11 @@ class Modes(NamedTuple):
     m_codes: tuple[int, ...]
     settings: tuple[float, ...]
 
+    @property
+    def line(self) -> int:
+        """The line of the block after which they were in force."""
+        return self.g_codes[0] if self.g_codes else 0
+
     def as_block(self) -> str:
         """A line that brings these modes back: plane, units, distance, feed, coordinate system, path, F and S."""
         codes = [code for code in self.g_codes[1:] if code in RESTORABLE]

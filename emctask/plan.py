@@ -143,6 +143,11 @@ class Plan:
         self._last_line = ""
 
     @property
+    def runs_program(self) -> bool:
+        """Is it a program that is under way?"""
+        return self.source is Source.PROGRAM
+
+    @property
     def typed(self) -> bool:
         """Is it an MDI line that is under way?"""
         return self.source is Source.MDI

@@ -49,6 +49,7 @@ class Runner:
 
     def run_program(self, line: int) -> None:
         """Start the loaded program; ``line`` above 1 skips what comes before."""
+        self._task.status.forget_line(self._task.motion.status.id)
         self._start(lambda: self._task.plan.start(line), self._task.echo)
 
     def run_mdi(self, text: str) -> None:
@@ -190,7 +191,10 @@ class Runner:
             self._set(Interp.PAUSED)
 
     def pause_at_stop(self) -> None:
-        """The program stopped itself: motion stands already, and says so."""
+        """The program stopped itself: motion stands already, and says so. A typed line that ends there is over."""
+        plan = self._task.plan
+        if plan.typed and not plan.busy and not self._task.canon.queue:
+            return
         self._task.motion.send(MotCommand.PAUSE)
         self._hold()
 
@@ -266,6 +270,7 @@ class Runner:
         self.serial = 0
         task.mdi_queue.clear()
         task.mdi_text = ""
+        task.status.forget_line(task.motion.status.id)
         task.sequencer.abort()
         task.motion.send(MotCommand.ABORT)
         task.paused = False

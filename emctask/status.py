@@ -35,6 +35,9 @@ class StatusWriter:
         self._last = 0.0
         self._written = bytearray(EMC_STAT.SIZE)
         self._modes: Modes | None = None
+        self._line = 0
+        self._forgotten = 0
+        """The last move whose line is not shown any more."""
         self._mode_on: int = TrajMode.FREE
         """Motion's mode when the machine was on last."""
         self._offsets: dict[str, object] = {}
@@ -70,8 +73,9 @@ class StatusWriter:
             self._written[:] = image(stat)
             self._last = now
 
-    def forget_line(self) -> None:
-        """The line of the last move is not shown any more."""
+    def forget_line(self, move: int) -> None:
+        """The line of a move is not shown any more, even while the machine comes to rest on it."""
+        self._forgotten = move
         self.message.task.motionLine = 0
 
     def _mode_when_on(self, task: Task) -> int:
@@ -103,14 +107,16 @@ class StatusWriter:
         t.interpreter_errcode = plan.interpreter_code
         t.programUnits = task.canon.coords.units
         executing = task.motion.status.id
-        place = task.canon.places.at(executing) if executing else None
+        place = task.canon.places.at(executing) if executing > self._forgotten else None
         t.currentLine = task.sequencer.current_line
         if place or not t.currentLine:
             t.motionLine = place.line if place else 0
+        stat.motion.traj.id = place.line if place else 0
         t.readLine = plan.interp.line if plan.active else 0
         block = place.block if place else task.sequencer.current_block if plan.active else None
         t.callLevel = block.level if block else plan.interp.call_level
-        self._fill_modes((block.modes if block else None) or plan.modes, task.canon)
+        modes = (block.modes if block else None) or plan.modes
+        self._fill_modes(modes, task.canon, t.motionLine if plan.runs_program else modes.line)
         if task.offsets != self._offsets:
             self._offsets = dict(task.offsets)
             for name, value in self._offsets.items():
@@ -120,14 +126,15 @@ class StatusWriter:
                 self._texts[name] = text
                 setattr(t, name, text[:254])
 
-    def _fill_modes(self, modes: Modes, canon: WorldModel) -> None:
-        if modes is self._modes or not modes.g_codes:
+    def _fill_modes(self, modes: Modes, canon: WorldModel, line: int) -> None:
+        """The codes in force; the first of each list is the line that they belong to."""
+        if (modes is self._modes and line == self._line) or not modes.g_codes:
             return
-        self._modes = modes
+        self._modes, self._line = modes, line
         task = self.message.task
-        task.activeGCodes = modes.g_codes
-        task.activeMCodes = modes.m_codes
-        task.activeSettings = canon.shown_settings(modes.settings)
+        task.activeGCodes = (line, *modes.g_codes[1:])
+        task.activeMCodes = (line, *modes.m_codes[1:])
+        task.activeSettings = (line, *canon.shown_settings(modes.settings)[1:])
 
     def close(self) -> None:
         """Close the channel."""

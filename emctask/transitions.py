@@ -148,7 +148,7 @@ def request_mode(task: Task, wanted: Mode) -> None:
     task.mode = wanted
     task.plan.must_synch = True
     task.plan.forget_line()
-    task.status.forget_line()
+    task.status.forget_line(task.motion.status.id)
     if task.state is State.ON:
         complaint = f"motion does not go into {wanted.name.lower()} mode"
         task.expect(lambda: motion_suits(task, wanted) or task.motion.refused_last, complaint)

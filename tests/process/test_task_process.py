@@ -164,6 +164,39 @@ def test_a_move_beyond_a_limit_names_its_line_and_ends_the_program(desk):
 
 
 @pytest.mark.parametrize("changes", [{"RS274NGC.SUBROUTINE_PATH": "."}])
+def test_nothing_behind_a_move_beyond_a_limit_is_done(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F3000\nG0 X1\nG1 X900\nG0 X2\nG0 Y5\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.interp_state == linuxcnc.INTERP_IDLE and s.inpos and desk.texts, "the end")
+    assert desk.look().state == ERROR
+    assert desk.stat.position[0] <= 1.0
+    assert desk.stat.position[1] == 0.0
+    (text,) = desk.texts
+    assert text.startswith("Linear move on line 3 would exceed")
+
+
+def test_a_typed_stop_has_nothing_to_hold_and_does_not_keep_the_next_line_waiting(desk):
+    desk.ready(linuxcnc.MODE_MDI)
+    for line in ("M0", "M1", "M60"):
+        assert desk.mdi(line) == DONE
+        assert not desk.stat.paused
+    assert desk.mdi("G0 X1") == DONE
+    assert x(desk) == 1.0
+
+
+def test_the_executing_move_is_known_by_its_line(desk):
+    desk.ready(linuxcnc.MODE_AUTO)
+    desk.program("G21 G90 F300\nG1 X1\nG1 X1.5\nM8\nG1 X20\nM2\n")
+    desk.run()
+    desk.until(lambda s: s.position[0] > 2.0, "the last move")
+    assert (desk.stat.motion_line, desk.stat.motion_id) == (5, 5)
+    assert [codes[0] for codes in (desk.stat.gcodes, desk.stat.mcodes, desk.stat.settings)] == [5, 5, 5.0]
+    assert 8 in desk.stat.mcodes
+    assert desk.do(desk.command.abort) == DONE
+    assert desk.stat.motion_line == desk.stat.motion_id == 0
+
+
 def test_probing_waiting_and_subroutines_of_mdi_lines_give_the_same_result_every_time(desk):
     desk.ready(linuxcnc.MODE_MDI)
     (desk.folder / "twice.ngc").write_text("o<twice> sub\nG1 X[#1 * 2] F6000\nM66 P0 L3 Q0.02\no<twice> endsub\n")
