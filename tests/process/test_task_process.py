@@ -163,7 +163,6 @@ def test_a_move_beyond_a_limit_names_its_line_and_ends_the_program(desk):
     assert desk.stat.interp_state == linuxcnc.INTERP_IDLE
 
 
-@pytest.mark.parametrize("changes", [{"RS274NGC.SUBROUTINE_PATH": "."}])
 def test_nothing_behind_a_move_beyond_a_limit_is_done(desk):
     desk.ready(linuxcnc.MODE_AUTO)
     desk.program("G21 G90 F3000\nG0 X1\nG1 X900\nG0 X2\nG0 Y5\nM2\n")
@@ -197,6 +196,7 @@ def test_the_executing_move_is_known_by_its_line(desk):
     assert desk.stat.motion_line == desk.stat.motion_id == 0
 
 
+@pytest.mark.parametrize("changes", [{"RS274NGC.SUBROUTINE_PATH": "."}])
 def test_probing_waiting_and_subroutines_of_mdi_lines_give_the_same_result_every_time(desk):
     desk.ready(linuxcnc.MODE_MDI)
     (desk.folder / "twice.ngc").write_text("o<twice> sub\nG1 X[#1 * 2] F6000\nM66 P0 L3 Q0.02\no<twice> endsub\n")
