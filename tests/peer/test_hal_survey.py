@@ -74,7 +74,7 @@ def complaints(path: Path) -> list[str]:
     ):  # fmt: skip
         session.host.start()
         try:
-            set_up(session, configuration.ini, configuration.folder, configuration.hal_files)
+            set_up(session, configuration)
         except ConfigError as refusal:
             print(refusal, file=said)
         finally:
