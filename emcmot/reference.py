@@ -27,6 +27,7 @@ from emcmot.kins import (
     scorbotkins,
     tripodkins,
     trivkins,
+    userkins,
     xyzab_tdr_kins,
     xyzac_trt_kins,
     xyzbc_trt_kins,
@@ -37,7 +38,7 @@ from emcmot.parameters import PARAMETERS
 KINEMATICS = (
     *(corexykins, fiveaxiskins, genhexkins, genserkins, lineardeltakins, matrixkins, maxkins, millturn, pentakins),
     *(pumakins, rosekins, rotarydeltakins, rotatekins, scarakins, scorbotkins, tripodkins, trivkins),
-    *(xyzab_tdr_kins, xyzac_trt_kins, xyzbc_trt_kins),
+    *(userkins, xyzab_tdr_kins, xyzac_trt_kins, xyzbc_trt_kins),
 )
 LAST_JOINT = 5
 

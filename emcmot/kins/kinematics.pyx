@@ -177,7 +177,7 @@ cdef class KinematicsModule:
     def connect(self, comp) -> None:
         """Make the HAL pins, and remember which double each is bound to."""
         # here, because the library needs no HAL
-        from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RW, HAL_S32, HAL_U32
+        from hal import HAL_BIT, HAL_FLOAT, HAL_IN, HAL_IO, HAL_OUT, HAL_RO, HAL_RW, HAL_S32, HAL_U32
 
         types = {"float": HAL_FLOAT, "bit": HAL_BIT, "s32": HAL_S32, "u32": HAL_U32}
         directions = {"IN": HAL_IN, "OUT": HAL_OUT, "IO": HAL_IO}
@@ -185,7 +185,8 @@ cdef class KinematicsModule:
             name = row.name if row.name.startswith("skgui.") else f"{self.name}.{row.name}"
             value = row.value if row.type == "float" else int(row.value)
             if row.direction == "PARAM":
-                made = comp.param(name, types[row.type], HAL_RW, value=value)
+                access = HAL_RW if index < self.kins.parameters else HAL_RO
+                made = comp.param(name, types[row.type], access, value=value)
             else:
                 made = comp.pin(name, types[row.type], directions[row.direction], value=value)
             if index < self.kins.parameters:
@@ -194,7 +195,7 @@ cdef class KinematicsModule:
                 at = <uintptr_t>&self.outputs[index - self.kins.parameters]
                 self.bindings.append(Binding(made.address, at, row.type, "OUT"))
         if self.kins.ways > 1:
-            for way in range(KINS_WAYS):
+            for way in range(self.kins.ways):
                 made = comp.pin(f"kinstype.is-{way}", HAL_BIT, HAL_OUT, value=way == 0)
                 self.bindings.append(Binding(made.address, <uintptr_t>&self.kins.selected[way], "bit", "OUT"))
 
@@ -241,10 +242,12 @@ def check_arguments(name: str, args: dict, known: tuple = ()) -> None:
         raise HalError(f"{name}: unknown argument {', '.join(unknown)}; {takes}")
 
 
-def provide(host, module: KinematicsModule) -> None:
-    """Register ``module`` with the realtime host, with its HAL pins."""
+def provide(host, module: KinematicsModule, add=None) -> None:
+    """Register ``module`` with the realtime host, with its HAL pins and what ``add`` gives the component besides."""
     comp = host.component(module.name)
     module.connect(comp)
+    if add is not None:
+        add(comp)
     comp.keep(module)
     host.provide("kinematics", module)
     comp.ready()

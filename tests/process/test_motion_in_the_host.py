@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from hal._shm import PIN
 from nml.emc.emcmot import MotCommand as C
 from nml.errors import HalError
 from nml.pulse import Pulse
@@ -130,6 +131,27 @@ def test_an_analog_output_switches_the_kinematics_and_pins_give_its_geometry() -
         assert (status.carte_pos_cmd.tran.x, status.carte_pos_cmd.tran.y) == pytest.approx((10.0, 10.0))
         assert [machine.hal.value(f"kinstype.is-{n}") for n in range(3)] == [False, True, False]
         assert machine.errors() == []
+
+
+TEMPLATE = """\
+loadrt millturn
+loadrt motmod num_joints=4
+addf millturn.0.fdemo servo-thread
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+setp millturn.in 7
+"""
+
+
+def test_kinematics_of_the_template_have_its_pins_and_its_function() -> None:
+    with MotionHost(TEMPLATE) as machine:
+        machine.wait(lambda s: machine.hal.value("millturn.0.fpin") > 3, "a few periods")
+        shown = {pin.name for pin in machine.hal.segment.items(PIN) if pin.name.startswith(("millturn.", "kinstype."))}
+        assert shown == {
+            *("millturn.in", "millturn.out", "millturn.0.fpin", "millturn.0.fdemo.time"),
+            *("kinstype.is-0", "kinstype.is-1"),
+        }
+        assert (machine.hal.value("millturn.param-rw"), machine.hal.value("millturn.param-ro")) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ from emcmot.kins import (
     scorbotkins,
     tripodkins,
     trivkins,
+    userkins,
     xyzab_tdr_kins,
     xyzac_trt_kins,
     xyzbc_trt_kins,
@@ -129,5 +130,6 @@ CASES = (
     Case("xyzab_tdr_kins", xyzab_tdr_kins.create, [SLIDE] * 5, pins=DUAL),
     Case("xyzab_tdr_kins", xyzab_tdr_kins.create, [SLIDE] * 3 + [TILT, TURN], way=1, pins=DUAL),
     Case("millturn", millturn.create, [SLIDE] * 4),
+    Case("userkins", userkins.create, [SLIDE] * 3),
     Case("millturn", millturn.create, [SLIDE] * 4, way=1),
 )

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import pytest
 
 from emcmot.core import Core
-from emcmot.kins import trivkins
+from emcmot.kins import millturn, trivkins, userkins
 from nml.errors import HalError
 
 
@@ -42,3 +44,12 @@ def test_bad_arguments_are_named(arguments: dict[str, str]) -> None:
 def test_too_few_joints_for_the_kinematics_are_refused() -> None:
     with pytest.raises(HalError, match="num_joints=2"):
         Core(trivkins.create("xyz"), num_joints=2)
+
+
+@pytest.mark.parametrize("module", [millturn, userkins])
+def test_kinematics_of_the_template_echo_their_pin_when_the_inverse_is_called(module: ModuleType) -> None:
+    kins = module.create()
+    kins.set_parameter("in", 7.0)
+    assert kins.output_values()["out"] == 0.0
+    assert kins.inverse([1, 2, 3, 4, 0, 0, 0, 0, 0])[:3] == [1, 2, 3]
+    assert kins.output_values()["out"] == 7.0
