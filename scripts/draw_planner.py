@@ -10,7 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "benchmarks")]
+
+import tp_cost  # noqa: E402
 
 from emcmot.tp.planner import Planner  # noqa: E402
 
@@ -90,7 +92,7 @@ def jerk() -> Figure:
     figure = Figure(figsize=(11, 6), layout="constrained")
     rows = figure.subplots(3, 2, sharex="col")
     for column, (limit, title) in enumerate(((0.0, "PLANNER_TYPE = 0"), (10_000.0, "PLANNER_TYPE = 1, 10,000 mm/s³"))):
-        q = cut([(10, 0, 0), (10, 10, 0)], 0.1, jerk=limit)
+        q = cut([(40, 0, 0), (40, 40, 0)], 0.1, jerk=limit)
         q = np.vstack([np.zeros((3, 9)), q, q[-1:], q[-1:], q[-1:]])
         rows[0, column].set_title(title)
         for row in range(3):
@@ -104,9 +106,34 @@ def jerk() -> Figure:
     return figure
 
 
+def cost() -> Figure:
+    """What a servo period costs with 0.02 mm moves: histograms by length of the queue, and the growth with it."""
+    figure = Figure(figsize=(11, 4.5), layout="constrained")
+    histogram, growth = figure.subplots(1, 2)
+    queues = (100, 300, 1000, 2000, 4000)
+    percentiles = {"median": 50.0, "99 %": 99.0, "99.9 %": 99.9}
+    shown: dict[str, list[float]] = {name: [] for name in [*percentiles, "add: median"]}
+    for queue in queues:
+        runs = [tp_cost.run(tp_cost.tiny, 0.0005, queue, False, 0.0) for _ in range(3)]
+        periods, adds = (values / 1000.0 for values in tp_cost.least(runs))
+        if queue in (100, 1000, 4000):
+            edges = np.geomspace(0.05, 500.0, 60)
+            histogram.hist(np.clip(periods, 0.05, 499.0), edges, histtype="step", label=f"{queue} moves in the queue")
+        for name, share in percentiles.items():
+            shown[name].append(float(np.percentile(periods, share)))
+        shown["add: median"].append(float(np.median(adds)))
+    histogram.set(xscale="log", yscale="log", xlabel="cost of a servo period, us", ylabel="periods of 8,000")
+    histogram.legend()
+    for name, values in shown.items():
+        growth.plot(queues, values, "o-", label=name)
+    growth.set(xscale="log", yscale="log", xlabel="moves in the queue", ylabel="us", title="a period; adding a move")
+    growth.legend()
+    return figure
+
+
 def main() -> None:
     OUT.mkdir(exist_ok=True)
-    for draw in (corner, short_moves, look_ahead, jerk):
+    for draw in (corner, short_moves, look_ahead, jerk, cost):
         draw().savefig(OUT / f"planner_{draw.__name__}.png", dpi=80)
 
 
