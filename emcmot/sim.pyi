@@ -14,6 +14,7 @@ class Motion(Core):
     loopback: bool
     worst_vel: float
     worst_acc: float
+    worst_jerk: float
     def __init__(
         self,
         coordinates: str = "xyz",
