@@ -1,7 +1,6 @@
 """Types of the common part of all kinematics; the texts are in ``kinematics.pyx``."""
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 AXIS_LETTERS: str
