@@ -19,7 +19,7 @@ from aiohttp import WSMsgType, web
 import linuxcnc
 from gui.web.access import Role, bearer
 from gui.web.calls import CallError
-from gui.web.machine import Machine
+from gui.web.ends import Ends
 from gui.web.programjogs import ProgramJogs
 from linuxcnc._connection import error, open_channel
 from nml.channel import Channel
@@ -95,12 +95,12 @@ def describe(name: Any) -> dict[str, Any]:
 class Connection:
     """One client of the gateway."""
 
-    def __init__(self, socket: web.WebSocketResponse, machine: Machine, jogs: ProgramJogs, role: Role) -> None:
+    def __init__(self, socket: web.WebSocketResponse, jogs: ProgramJogs, role: Role) -> None:
         self._socket = socket
-        self._machine = machine
         self._jogs = jogs
         self._role = role
         self._commands: Channel = open_channel("emcCommand")
+        self._ends = Ends()
         self._subscriptions: dict[str, asyncio.Task[None]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._binary = socket.ws_protocol == MSGPACK
@@ -122,6 +122,7 @@ class Connection:
                 task.cancel()
             self._jogs.end()
             self._commands.close()
+            self._ends.close()
 
     async def _obey(self, data: str | bytes) -> None:
         number = None
@@ -170,13 +171,11 @@ class Connection:
         """Nothing to do: any frame keeps the jogs of this program going."""
 
     async def _follow(self, number: Any, serial: int) -> None:
-        """Tell how a command ended."""
-        answer: dict[str, Any] = {"id": number, "serial": serial, "result": "done"}
-        try:
-            await self._machine.finished(serial)
-        except CallError as reason:
-            answer |= {"result": "aborted" if reason.code == "aborted" else "error"}
-            answer |= {"error": reason.text.format(**reason.more)}
+        """Tell how a command ended, with the messages that belong to it."""
+        end = await self._ends.of(serial)
+        answer = {"id": number, "serial": serial, "result": end.outcome, "messages": end.messages}
+        if end.outcome != "done":
+            answer["error"] = "; ".join(end.messages) or end.outcome
         await self.send(answer)
 
     async def _subscribe(self, frame: dict[str, Any]) -> None:
@@ -238,7 +237,7 @@ def read_frame(data: str | bytes, binary: bool) -> dict[str, Any]:
 
 
 async def serve(
-    request: web.Request, machine: Machine, jogs: ProgramJogs, role_of: Callable[[str | None], Role | None]
+    request: web.Request, jogs: ProgramJogs, role_of: Callable[[str | None], Role | None]
 ) -> web.StreamResponse:
     """One connection from its upgrade to its end."""
     socket = web.WebSocketResponse(protocols=(JSON, MSGPACK), heartbeat=HEARTBEAT, max_msg_size=LONGEST_FRAME)
@@ -249,7 +248,7 @@ async def serve(
     if role is None:
         await socket.close(code=BAD_TOKEN, message=b"wrong token")
     else:
-        await Connection(socket, machine, jogs, role).converse()
+        await Connection(socket, jogs, role).converse()
     return socket
 
 

@@ -218,4 +218,4 @@ async def _gateway(request: web.Request) -> web.StreamResponse:
     if not server.access.needs_token:
         return refusal(403, "token", "the gateway needs tokens; [WEB]TOKEN_FILE names their file")
     jogs = ProgramJogs(server.machine, server.jogging, server.config)
-    return await gateway.serve(request, server.machine, jogs, server.access.role)
+    return await gateway.serve(request, jogs, server.access.role)

@@ -88,7 +88,7 @@ def test_a_command_is_acknowledged_and_its_end_is_told(port, protocol):
         first, second = await gateway.receive(), await gateway.receive()
         assert first["id"] == second["id"] == 7
         assert first["serial"] == second["serial"] > 0
-        assert second["result"] == "done"
+        assert (second["result"], second["messages"]) == ("done", [])
 
     talk(port, work, protocol=protocol)
 
@@ -232,6 +232,25 @@ def test_a_jog_goes_on_while_frames_come_and_stops_by_order(port):
         await asyncio.to_thread(comes_to_rest)
 
     talk(port, work)
+
+
+def test_each_of_many_commands_at_once_gets_its_own_end(port):
+    async def work(gateway):
+        for number in range(60):
+            if number % 2:
+                await gateway.send(command="EMC_TASK_SET_MODE", fields={"mode": 1000 + number}, id=number)
+            else:
+                await gateway.send(command="EMC_TRAJ_SET_SCALE", fields={"scale": 1.0}, id=number)
+        ends = {}
+        while len(ends) < 60:
+            frame = await gateway.receive()
+            if "result" in frame:
+                ends[frame["id"]] = frame
+        return ends
+
+    for number, end in talk(port, work).items():
+        assert end["result"] == ("refused" if number % 2 else "done")
+        assert [str(1000 + number) in text for text in end["messages"]] == ([True] if number % 2 else [])
 
 
 @pytest.mark.parametrize("fields", [{**JOG, "vel": 0.0}, {**JOG, "joint_or_axis": 7}])
