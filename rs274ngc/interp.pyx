@@ -113,8 +113,10 @@ cdef class Interpreter:
         varfile.save(path or self.parameter_file, s.persistent, lambda number: s.params[<int>number])
 
     def exit(self):
-        """The session is over: save the parameters if they came from a file."""
+        """The session is over: end the Python plug-in, save the parameters if they came from a file."""
         self.reset()
+        if self.state.plugin is not None:
+            self.state.plugin.close()
         if self.parameter_file is not None:
             self.save_parameters()
 
@@ -127,6 +129,7 @@ cdef class Interpreter:
         self.flow.source = Source(path)
         s.file = path
         s.subs.clear()
+        self.flow.defined.clear()
         self.flow.search_path = self.folders()
         self.percent = False
         while True:

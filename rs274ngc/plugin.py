@@ -12,13 +12,14 @@ import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import ModuleType
 from typing import Any
 
 from nml.errors import ConfigError, InterpError
 from rs274ngc import plugin_canon, plugin_interpreter, settings
 from rs274ngc.plugin_interpreter import INTERP_ERROR, INTERP_EXECUTE_FINISH, INTERP_EXIT, INTERP_OK
+from rs274ngc.remap import Remap
 
 MODULES = ("remap", "oword", "namedparams")
 
@@ -45,6 +46,7 @@ class Plugin:
         self._forget(os.path.dirname(toplevel), *prepend, *append)
         with plugin_canon.using(interp.canon):
             self._run_toplevel(toplevel)
+        self._check(interp.state.remaps.values())
         self.named: dict[str, Callable[..., Any]] = {
             name: function
             for name, function in vars(self.namespace.get("namedparams", ModuleType("none"))).items()
@@ -71,11 +73,20 @@ class Plugin:
         except Exception as error:
             raise ConfigError(f"[PYTHON]TOPLEVEL={path}: {told(error)}") from error
 
+    def _check(self, remaps: Iterable[Remap]) -> None:
+        """ConfigError where a remapped code names a function that is not there."""
+        for remap in remaps:
+            for function in (remap.python, remap.prolog, remap.epilog):
+                if function is not None and not self.has("remap", function):
+                    raise ConfigError(f"REMAP={remap.name}: '{function}' is no function of the Python module remap")
+
     def close(self) -> None:
         """The interpreter ends: call the toplevel script's ``__delete__``."""
         end = self.namespace.get("__delete__")
         if callable(end):
-            end(self.view)
+            plugin_canon.write_out(self.interp.canon)
+            with plugin_canon.using(self.interp.canon):
+                end(self.view)
 
     def has(self, module: str, name: str) -> bool:
         """Is there such a function?"""
