@@ -265,14 +265,16 @@ def test_the_feed_mode_is_one_of_the_interpreter_modules_names(machine):
     assert messages(canon) == ["0.000000", "1.000000"]
 
 
-@pytest.mark.parametrize("options", ["prolog=there ngc=x epilog=gone", "prolog=gone ngc=x", "ngc=x epilog=gone", "python=gone"])
+@pytest.mark.parametrize(
+    "options", ["prolog=there ngc=x epilog=gone", "prolog=gone ngc=x", "ngc=x epilog=gone", "python=gone"]
+)
 def test_a_remap_that_names_a_function_which_is_not_there_is_refused_at_once(machine, options):
     with pytest.raises(ConfigError, match="REMAP=M400: 'gone' is no function of the Python module remap"):
         machine(f"M400 modalgroup=10 {options}", python="def there(self, **words):\n    return INTERP_OK\n")
 
 
-def test_the_toplevel_script_hears_of_the_end(machine, tmp_path):
-    interp, canon = machine(oword="def nothing(self):\n    pass\n")
+def test_the_toplevel_script_hears_of_the_end(machine):
+    interp, _ = machine(oword="def nothing(self):\n    pass\n")
     top = interp.state.plugin.namespace
     ends = []
     top["__delete__"] = lambda self: ends.append(self.remap_level)
