@@ -57,7 +57,7 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("--capture", nargs="+", metavar="PIN", required=True, help="pins or parameters to record")
     parser.add_argument("--thread", default="servo-thread", help="thread whose periods are recorded")
     parser.add_argument("--samples", type=int, default=1000, metavar="N", help="periods to record")
-    parser.add_argument("--trigger", type=Trigger.parse, metavar="PIN>LEVEL", help="wait until the pin passes a level")
+    parser.add_argument("--trigger", metavar="PIN>LEVEL", help="wait until the pin passes a level")
     parser.add_argument("--before", type=int, metavar="N", help="periods before the trigger; a tenth of all by default")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="standard output by default")
     parser.add_argument("--png", type=Path, metavar="FILE")
@@ -70,17 +70,19 @@ def main(argv: list[str] | None = None) -> int:
     names = list(options.capture)
     zero = 0
     try:
+        trigger = Trigger.parse(options.trigger) if options.trigger else None
         with Session() as session:
             thread = session.hal.segment.find_thread(options.thread)
             if thread is None:
-                raise HalError(f"thread '{options.thread}' not found")
+                threads = ", ".join(record.name for record in session.hal.segment.threads())
+                raise HalError(f"thread '{options.thread}' not found; there is {threads or 'none'}")
             period_s = thread.period_ns * 1e-9
-            if options.trigger and options.trigger.pin not in names:
-                names.append(options.trigger.pin)
+            if trigger and trigger.pin not in names:
+                names.append(trigger.pin)
             with Capture(session, names, options.thread) as capture:
-                if options.trigger:
+                if trigger:
                     zero = options.samples // 10 if options.before is None else options.before
-                    rows = capture.read_triggered(options.samples, options.trigger, zero)
+                    rows = capture.read_triggered(options.samples, trigger, zero)
                 else:
                     rows = capture.read(options.samples)
         if options.csv or not options.png:

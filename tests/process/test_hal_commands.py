@@ -150,6 +150,30 @@ def test_meter_and_report_show_the_session(session: None) -> None:
     assert '"siggen.0" -> "and2.0" [label="bit"];' in run("report", "--dot").stdout
 
 
+@pytest.mark.parametrize("main", ["main", "histogram_main"])
+def test_latency_programs_leave_a_running_session_alone(session: None, main: str) -> None:
+    code = f"import sys; from hal.latency import {main}; sys.exit({main}(['--seconds', '1']))"
+    done = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, timeout=60)
+    assert (done.returncode, "a realtime session is running" in done.stderr) == (1, True)
+    before, after = (float(halcmd("getp", "siggen.0.sine")) for _ in range(2))
+    assert -1.0 <= before <= 1.0
+    assert -1.0 <= after <= 1.0
+    assert halcmd("list", "thread") == "thread1 \n"
+
+
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        (["--trigger", "siggen.0.sine"], "trigger 'siggen.0.sine': PIN>LEVEL or PIN<LEVEL would be right"),
+        (["--thread", "servo"], "thread 'servo' not found; there is thread1"),
+    ],
+)
+def test_the_scope_says_what_would_be_right(session: None, words: list[str], what: str) -> None:
+    done = run("scope", "--capture", "siggen.0.sine", *words)
+    assert done.returncode == 1
+    assert done.stderr == f"halscope: {what}\n"
+
+
 def test_latency_test_measures_in_a_session_of_its_own(own_namespace: str, tmp_path: Path) -> None:
     lines = run("latency", "-", "1ms", "--seconds", "0.3").stdout.splitlines()
     assert lines[-1].split()[:2] == ["servo", "1000000"]
