@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 
+from nml import namespace
 from tests.support import shield
 from tests.support.nml_server import SOURCE, remote_text
 
@@ -148,7 +149,7 @@ def ours(folder: Path, script: str, *, changes: dict[str, str] | None = None, se
     done = subprocess.run(
         [sys.executable, "-m", "linuxcnc.launcher", "machine.ini"],
         cwd=folder,
-        env={**os.environ, "HOME": str(folder), "PYTHONPATH": str(SOURCE)},
+        env={**os.environ, "HOME": str(folder), "PYTHONPATH": str(SOURCE), namespace.VARIABLE: f"ours{os.getpid()}"},
         capture_output=True,
         text=True,
         timeout=seconds,
