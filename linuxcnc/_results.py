@@ -54,33 +54,41 @@ class Results:
     """A reader of emcResults, which keeps some thousand ends of orders."""
 
     def __init__(self, status: Channel) -> None:
-        self._channel = open_channel(RESULT_BUFFER)
         self._status = status
         self._serial = 0
         self._messages: list[str] = []
         self._mark = 0
-        self.told = True
-        """Does the machine tell results? A LinuxCNC elsewhere does not; known when one was waited for."""
+        self._channel: Channel | None = None
+        try:
+            self._channel = open_channel(RESULT_BUFFER)
+        except error:
+            if not status.remote:
+                raise
+        self.told = self._channel is not None
+        """Does the machine tell results? A LinuxCNC elsewhere does not; known for sure when one was waited for."""
 
     def mark(self) -> None:
         """A command is about to be given; its result comes after what was told so far."""
-        if not self._channel.remote:
+        if self._channel is not None and not self._channel.remote:
             self._mark = self._channel.write_counter
 
     def wait(self, serial: int, timeout: float) -> Result | None:
         """The end of the command that was given last; None if it is not over after ``timeout`` s, or never told."""
+        channel = self._channel
+        if channel is None:
+            return None
         if serial != self._serial:
             self._serial, self._messages = serial, []
         deadline = clock.host_now() + timeout
         try:
-            while (result := self._read()) is None:
+            while (result := self._read(channel)) is None:
                 left = deadline - clock.host_now()
                 if left <= 0.0:
                     return None
-                if not self._channel.wait(min(left, LOOK)):
+                if not channel.wait(min(left, LOOK)):
                     self._look_for_life()
         except BufferError_ as reason:
-            if not self._channel.remote:
+            if not channel.remote:
                 raise error(f"{RESULT_BUFFER}: {reason}") from reason
             self.told = False
             return None
@@ -88,8 +96,8 @@ class Results:
             raise error(f"{RESULT_BUFFER}: {reason}") from reason
         return result
 
-    def _read(self) -> Result | None:
-        channel, missed = self._channel, self._channel.missed
+    def _read(self, channel: Channel) -> Result | None:
+        missed = channel.missed
         while (message := channel.read()) is not None:
             if channel.missed != missed and channel.raw.last > self._mark + 1:
                 raise error(f"the result of command {self._serial} was dropped: it was asked for too late")
