@@ -321,6 +321,16 @@ def test_every_get_command_answers(session):
         assert reply.split()[0] == ("GET" if name == "INI" else question.said or name)
 
 
+def test_no_set_command_with_an_order_is_taken_from_a_connection_that_is_not_enabled(task, server):
+    stranger, guest = connect(server), connect(server, 6)
+    guest.answer("hello EMC guest 1.0")
+    for name, one in SETTERS.items():
+        if one.access > Access.HELLO:
+            assert stranger.answer(f"set {name} 1").splitlines()[-1].endswith("NAK")
+            assert guest.answer(f"set {name} 1").splitlines()[-1].endswith("NAK")
+    assert task.taken == []
+
+
 def test_garbage_never_raises(session):
     ours = [name for name, one in SETTERS.items() if one.access > Access.HELLO]
     session.answer("set timeout 0.01")
