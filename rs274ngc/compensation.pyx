@@ -408,7 +408,7 @@ cdef int compensated_arc(State s, Block* b, int code, const double* end) except 
     radius = hypot(a.centre[0] - a.end[0], a.centre[1] - a.end[1])
     if toward > 0.0 and radius <= r and not s.comp_first:
         return fail(s, "Tool radius not less than arc radius with comp")
-    if s.comp_first and toward > 0.0 and radius <= r:
+    if s.comp_first and (toward > 0.0 and radius <= r or hypot(a.end[0] - ou, a.end[1] - ov) <= r):
         return fail(s, "Radius of cutter compensation entry arc is not greater than the tool radius")
     gamma = atan2(a.centre[1] - a.end[1], a.centre[0] - a.end[0])
     if toward < 0.0:

@@ -12,6 +12,7 @@ cdef class Flow:
     cdef State s
     cdef public Source source           # the file being read; None for commands typed in
     cdef public list search_path        # folders of subroutine files
+    cdef public dict defined            # line of each label of a condition or loop, by subroutine and label
     cdef long line_start                # offset of the line that was read last
     cdef int read_raw(self) except -2
     cdef int jump(self, long position, int line) except -1

@@ -46,6 +46,7 @@ cdef class Flow:
     def __init__(self, State s):
         self.s = s
         self.search_path = []
+        self.defined = {}
 
     # --- Lines
 
@@ -115,6 +116,8 @@ cdef class Flow:
                 if s.text[at] == c'<' or c'0' <= s.text[at] <= c'9':
                     raise
                 continue        # a computed label whose parameters are not there yet
+            if found == label and keyword in ONCE and keyword not in keywords and "sub" not in keywords:
+                self.define(label, keyword, at)
             if keyword == "sub" and "endsub" in keywords:
                 fail(s, "Nested subroutine definition", at)
             if found == label and keyword in keywords:
@@ -209,6 +212,19 @@ cdef class Flow:
         else:
             self.enter(label, arguments)
 
+    def define(self, str label, str keyword, int at):
+        """A label of a condition or loop: it may stand at one line of the program or of the subroutine only."""
+        cdef State s = self.s
+        if self.s.frame.sub == "" and s.frame.source is None and self.source is None:
+            return      # typed in: no line of anything
+        line = self.defined.setdefault((s.frame.sub, label), s.line)
+        if line == s.line:
+            return
+        block = s.interp.block_text
+        if keyword == "if":
+            fail(s, f"{s.line}: duplicate O-word label - already defined in line {line}: '{block}'", at)
+        fail(s, f"{s.line}: duplicate O-word label: '{block}' - defined in line {line}", at)
+
     def do_while(self, str label, int at):
         cdef Label known = self.s.frame.labels.get(label)
         cdef Source source = self.source
@@ -221,6 +237,7 @@ cdef class Flow:
             else:
                 del self.s.frame.labels[label]
             return
+        self.define(label, "while", at)
         start = self.line_start
         condition = self.value(&i, "while")
         if condition != 0.0:
@@ -234,11 +251,14 @@ cdef class Flow:
         self.jump(known.position, known.line)
 
     def do_do(self, str label, int at):
+        self.defined[self.s.frame.sub, label] = self.s.line
         self.s.frame.labels[label] = Label("do", self.s.line, self.source.position, self.source.line)
 
     def do_repeat(self, str label, int at):
         cdef int i = at
-        cdef double times = self.value(&i, "repeat")
+        cdef double times
+        self.define(label, "repeat", at)
+        times = self.value(&i, "repeat")
         if times > 2.0e9:
             fail(self.s, "Too many repetitions", at)
         if times < 0.5:
@@ -269,7 +289,9 @@ cdef class Flow:
 
     def do_if(self, str label, int at):
         cdef int i = at
-        cdef bint taken = self.value(&i, "if") != 0.0
+        cdef bint taken
+        self.define(label, "if", at)
+        taken = self.value(&i, "if") != 0.0
         self.s.frame.labels[label] = Label("if", self.s.line, taken=taken)
         if not taken:
             self.next_branch(label)
@@ -447,6 +469,8 @@ cdef class Flow:
         self.source = caller.source
         if self.source is not None:
             self.jump(caller.position, caller.line)
+        elif len(s.frames) == 1:
+            self.defined.clear()        # typed in: the file may be another by the next call
         if not done.fanuc:
             for k in range(1, LOCALS + 1):
                 s.params[k] = caller.locals[k]
@@ -479,6 +503,8 @@ cdef class Flow:
             self.pop()
 
 
+ONCE = ("if", "while", "repeat")
+"""O-words whose label is defined where they stand."""
 LOOP_END = {"while": ("endwhile",), "do": ("while",)}
 ACTIONS = {word: getattr(Flow, "do_" + word) for word in KEYWORDS}
 """What each O-word does: called with the Flow, the label and the place after the keyword."""

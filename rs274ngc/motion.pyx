@@ -217,6 +217,9 @@ cdef int reference_move(State s, Block* b, int code) except -1:
     for k in range(9):
         home[k] = s.params[first + k] / (factor if k < 3 or k > 5 else 1.0)
     machine_place(s, home)
+    if s.wrapped_rotary:
+        for k in range(3, 6):
+            unwrap(s, k, home[k], &home[k])
     if b.words & M_AXES:
         for k in range(9):
             if not has(b, axis_words[k]):

@@ -270,7 +270,7 @@ cdef int set_origin(State s, Block* b, int l) except -1:
                 value = b.value[axis_words[k]]
                 if k == 0 and s.diameter_mode:
                     value *= 0.5
-                stored[k] = value / parameter_factor(s, k) + (stored[k] if s.incremental else 0.0)
+                stored[k] = value / parameter_factor(s, k)
     if index != s.origin_index:
         s.canon.comment("interpreter: setting coordinate system origin")
         return 0
@@ -324,7 +324,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
             return fail_word(s, "Invalid tool orientation", W_Q)
         orientation = <int>value_or(b, W_Q, 0.0)
     write_tool(s, index, number, offset, diameter, front, back, orientation)
-    if index == s.tool_index and index != 0:
+    if index == s.tool_index and index != 0 and not s.random_toolchanger:
         write_tool(s, 0, number, offset, diameter, front, back, orientation)
     return refresh_tool_parameters(s)
 

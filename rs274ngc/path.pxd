@@ -25,3 +25,4 @@ cdef double arc_length(const double* start, const Arc* a) noexcept
 cdef int inverse_rate(State s, Block* b, double length) except -1
 cdef void machine_to_program(State s, double* point) noexcept
 cdef void machine_place(State s, double* point) noexcept
+cdef int unwrap(State s, int axis, double value, double* end) except -1
