@@ -72,11 +72,6 @@ class HostClient:
     def delf(self, funct: str, thread: str) -> None:
         self._ask("delf", funct, thread)
 
-    def tell_notes(self) -> None:
-        """Show what the host has to say: messages of components, late threads, components that died."""
-        if self._connect():
-            self._ask("notes")
-
     def quit(self) -> None:
         """Make the host stop its threads, unload everything and end; where it has died, clear up after it."""
         if self._connect():

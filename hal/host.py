@@ -48,7 +48,6 @@ class Server:
             "addf": self.host.add_function,
             "delf": self.host.remove_function,
             "quit": self.quit,
-            "notes": self.look,
         }
         self._late: set[str] = set()  # threads whose first overrun has been told
         self._overworked: set[str] = set()  # threads that were said to have too much to do
