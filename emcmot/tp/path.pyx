@@ -298,11 +298,9 @@ cdef Span* _new_span(TpState* tp, int kind, int64_t seg, double u0, double h) no
 cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     """Spans of the segment itself, from body_end on; long arcs come in several steps."""
     cdef Segment* seg = _seg(tp, index)
+    cdef Span* span
     cdef double way = tp.body_goal - tp.body_end, h = way
     cdef int kind = SPAN_LINE, count, k
-    if tp.smooth and seg.kind != TP_ARC and tp.inverse == NULL:
-        _add_smooth_line(tp, index)
-        return
     if seg.kind == TP_ARC or tp.inverse != NULL:
         kind = SPAN_CURVE
         h = fmin(h, fmax(4.0 * tp.dt * seg.vel_max, _braking_way(tp, seg)))
@@ -313,31 +311,19 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     count = <int>fmin(ceil(way / h), SPANS_PER_STEP)
     h = way / fmax(ceil(way / h), 1.0)
     for k in range(count):
-        _limit_body(tp, seg, _new_span(tp, kind, index, tp.body_end + k * h, h))
+        span = _new_span(tp, kind, index, tp.body_end + k * h, h)
+        if kind == SPAN_LINE and _between_stops(tp, index):
+            span.along = 1.0
+        _limit_body(tp, seg, span)
     tp.body_end += count * h
 
 
-cdef void _add_smooth_line(TpState* tp, int64_t index) noexcept nogil:
-    """Spans of a straight move where jerk is limited: what is next to a bend shares the jerk with it, the middle does not."""
-    cdef Segment* seg = _seg(tp, index)
-    cdef double way = tp.body_goal - tp.body_end, reach = seg.vel_max * tp.window * tp.dt
-    cdef double pieces[3]
-    cdef Span* span
-    cdef int k
-    pieces[0] = 0.0 if _starts_at_rest(tp, index) else fmin(reach, way)
-    pieces[2] = 0.0 if tp.corner_known and seg.exit_stop else fmin(reach, way - pieces[0])
-    pieces[1] = way - pieces[0] - pieces[2]
-    for k in range(3):
-        if pieces[k] > NO_WAY * seg.length:
-            span = _new_span(tp, SPAN_LINE, index, tp.body_end, pieces[k])
-            span.along = 1.0 if k == 1 else ALONG
-            _limit_body(tp, seg, span)
-            tp.body_end += pieces[k]
-    tp.body_end = tp.body_goal
-
-
-cdef int _starts_at_rest(const TpState* tp, int64_t index) noexcept nogil:
-    return _seg(tp, index).trim_start == 0.0 and (index <= tp.seg_head or _seg(tp, index - 1).exit_stop)
+cdef int _between_stops(const TpState* tp, int64_t index) noexcept nogil:
+    """Whether no bend is near a straight move: it has the jerk for itself."""
+    cdef const Segment* seg = _seg(tp, index)
+    if seg.trim_start > 0.0 or not (tp.corner_known and seg.exit_stop):
+        return 0
+    return index <= tp.seg_head or _seg(tp, index - 1).exit_stop
 
 
 cdef double _joint_way(TpState* tp, const Segment* seg, int64_t index, double h) noexcept nogil:

@@ -5,8 +5,8 @@ curvature, and a jump of the acceleration becomes a jerk of that jump / T. Avera
 acceleration, in each axis. From the path they are off by no more than T^2 / 24 times the acceleration across it.
 
 An axis spends its jerk by shares: most of it on changes of the acceleration along the path (`jerk` of a span), a part each
-way on its bends, a tenth on the change of speed within them. On straight stretches that are further from any bend than T lasts,
-changes of the acceleration along the path have all of it. T is chosen at rest, for the tolerance of the move that starts, so that
+way on its bends, a tenth on the change of speed within them. On straight moves from stop to stop, changes of the
+acceleration along the path have all of it. T is chosen at rest, for the tolerance of the move that starts, so that
 both bounds on bends, that of jerk and that of the distance from the path, bind at the same speed.
 Called by tp (choice), path (limits of spans) and advance (positions).
 """
