@@ -29,7 +29,7 @@ MOVE = Span(EMCMOT_COMMAND, "command", "tolerance")
 termCond, mode, tolerance."""
 
 BEATS = 5  # signs of life within the time that motion waits for one
-HUNG_S = 0.5  # host time without a cycle after which task gives no more signs of life
+HUNG_S = 3.0  # host time without a cycle after which task gives no more signs of life
 DEAD_S = 0.85  # host time without a new status after which motion counts as gone
 RESERVE = 10  # places of the planner's queue that task leaves free
 

@@ -190,7 +190,7 @@ KEYS: tuple[Key, ...] = (
         ("BASE_PERIOD", REAL, HAL, "period of the base thread; 0: none", {"default": "0", "unit": "ns", "minimum": 0}),
         ("TRAJ_PERIOD", REAL, HAL, "period of the planner, for loadrt", {"unit": "ns", "minimum": 0}),
         ("COMM_TIMEOUT", REAL, TASK, "how long motion may take to answer", {"default": "1", "unit": "s", "minimum": 0.01}),
-        ("HEARTBEAT_TIMEOUT", REAL, TASK, "how long motion waits for a sign of life of task before it stops the machine", {"default": "0.1", "unit": "s", "minimum": 0.02, "maximum": 10.0}),
+        ("HEARTBEAT_TIMEOUT", REAL, TASK, "how long motion waits for a sign of life of task before it stops the machine; 0.5 where there is no realtime priority", {"default": "0.1", "unit": "s", "minimum": 0.02, "maximum": 10.0}),
         ("COMM_WAIT", REAL, NOBODY, LINUXCNC_ONLY, {"unit": "s"}),
         ("SHMEM_KEY", INTEGER, NOBODY, LINUXCNC_ONLY, {}),
         ("HOMEMOD", TEXT, LAUNCHER, "the homing module: homemod, or one of your own by its name or file", {"default": "homemod"}),
