@@ -178,6 +178,53 @@ AWKWARD = {
         f3.456 s12
         o1 call
         g0 x1""",
+    "the label of a condition at two lines": """\
+        o1 if [1]
+        o1 endif
+        o1 if [1]
+        o1 endif""",
+    "a skipped loop with a label that is sought": """\
+        o1 if [0]
+        o1 repeat [2]
+        o1 endrepeat
+        o1 endif""",
+    "one label in a subroutine and in the program": """\
+        o1 sub
+        o2 if [1]
+        o2 endif
+        o1 endsub
+        o2 if [1]
+        o2 endif
+        o1 call
+        o1 call
+        g0 x1""",
+    "path control under compensation": """\
+        g41.1 d1
+        g1 x20
+        g64 p.1""",
+    "another coordinate system set under compensation": """\
+        g41.1 d1
+        g1 x20
+        g10 l2 p2 x1
+        g1 x30
+        g10 l2 p0 x1""",
+    "an entry arc no longer than the radius of the tool": """\
+        g42.1 d0.5
+        g2 j2.486
+        g1 x20 y-8""",
+    "coordinate systems set in incremental mode": """\
+        g10 l2 p1 x1
+        g91
+        g10 l2 p1 x1 y2
+        g10 l2 p2 x3
+        g10 l20 p1 x1
+        g90 g55
+        g0 x0""",
+    "a line that is too long": "g1 x1 (" + "c" * 246 + ")",
+    "an empty comment and a line number behind a slash": """\
+        ()
+        /n7 g0 x3
+        g4 p-2""",
     "orienting a spindle that turns": """\
         m3 s100
         m19 r10

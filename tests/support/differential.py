@@ -148,6 +148,7 @@ KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str]], ...] = tuple(
         ("polar words with G43.1", r"^N\S* USE_TOOL_LENGTH_OFFSET\(0.0000 0.0000", "USE_TOOL_LENGTH_OFFSET"),
         ("a word twice", "", r"Multiple [pq@^] words"),
         ("M98 without P beyond a search", "Found 'm98' code with no P-word", ""),
+        ("$0 with M51", r"Invalid spindle \(\$\) number in M51", ""),
         ("$ with G95 or G97", r"\$ \(spindle selection\) word with no", ""),
     )
 )
