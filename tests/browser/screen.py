@@ -14,6 +14,7 @@ ARTEFACTS = ROOT / "artefacts" / "browser"
 TABLET = (1280, 800)
 PHONE = (390, 844)
 TIMEOUT_MS = PATIENCE * 1000
+LOADING_MS = 3 * TIMEOUT_MS  # the page is many files and compiles them
 EXPECTED = re.compile(r"WebSocket connection|status of 409")  # a cut network; an upload that asks whether to replace
 GRAPHICS = "GL Driver Message"
 SLOW_JOG = {"jog.linear": "600"}  # mm/min; preferences of a screen whose jogs are far from the limits for half a minute
@@ -70,6 +71,7 @@ class Screen:
         width, height = size
         self.context = browser.new_context(viewport={"width": width, "height": height}, has_touch=touch, locale=lang)
         self.context.set_default_timeout(TIMEOUT_MS)
+        self.context.set_default_navigation_timeout(LOADING_MS)
         self.page = self.context.new_page()
         self.page.on("pageerror", lambda error: self.problems.append(f"page: {error}"))
         self.page.on("console", self._console)
