@@ -171,6 +171,7 @@ cdef class Interpreter:
         s.raw[0] = 0
         s.block.steps = 0
         s.waiting = 0
+        s.nurbs_active = False
         s.ended = s.must_finish = False
         self.canon.on_reset()
 
@@ -247,9 +248,9 @@ cdef class Interpreter:
             s.params[5601] = canon.get_external_tc_reason()
         if waiting & WAIT_INPUT:
             if s.input_digital:
-                s.params[5399] = canon.get_external_digital_input(s.input_index, 0)
+                s.params[5399] = canon.get_external_digital_input(s.input_index, s.params[5399] != 0.0)
             else:
-                s.params[5399] = canon.get_external_analog_input(s.input_index, 0.0)
+                s.params[5399] = canon.get_external_analog_input(s.input_index, s.params[5399])
         return 0
 
     # --- Read and execute

@@ -96,11 +96,11 @@ cdef int nurbs_point(State s, Block* b, int code) except -1:
     cdef double[9] end
     cdef int* axes = plane_axes[s.plane]
     cdef bint first = s.motion != code, placed = nurbs_place(s, b, end, "Cannot make a NURBS with 0 feedrate")
+    if (not first or s.nurbs_active) and value_or(b, W_P, 0.0) <= 0.0:      # also after a curve that was not ended
+        return fail(s, "Must specify positive weight P for every Control Point", b.g_at[1])
     if first:
         s.nurbs_order = value_or(b, W_L, NURBS_ORDER)
         s.nurbs_points = [(s.pos[axes[0]], s.pos[axes[1]], value_or(b, W_P, 1.0))]
-    elif not has(b, W_P) or b.value[W_P] <= 0.0:
-        return fail(s, "Must specify positive weight P for every Control Point", b.g_at[1])
     if placed:
         s.nurbs_points.append((end[axes[0]], end[axes[1]], value_or(b, W_P, 1.0)))
     elif not first:
