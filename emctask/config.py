@@ -21,6 +21,14 @@ UNLIMITED = 1e99
 LINEAR, ANGULAR = 1, 2
 
 
+def default_heartbeat_s() -> float:
+    """How long motion waits for a sign of life of task, host time, where the INI file does not say.
+
+    Where the system allows no realtime priority, a healthy task may be late by more than 0.1 s on a busy computer.
+    """
+    return 0.1 if _may_have_priority() else 0.5
+
+
 def _may_have_priority() -> bool:
     """Does the system let this process have realtime priority, as the thread that gives its signs of life should?"""
     before = os.sched_getscheduler(0), os.sched_getparam(0)
@@ -31,9 +39,6 @@ def _may_have_priority() -> bool:
     os.sched_setscheduler(0, *before)
     return True
 
-
-DEFAULT_HEARTBEAT_S = 0.1 if _may_have_priority() else 0.5
-"""Without priority a healthy task may be late by more than 0.1 s on a busy computer."""
 
 LENGTH_UNITS = {
     "mm": 1.0,
@@ -220,7 +225,7 @@ def read_config(ini: IniFile) -> MachineConfig:
         debug=_as_int32(ini.integer("EMC", "DEBUG", 0)),
         random_toolchanger=ini.boolean("EMCIO", "RANDOM_TOOLCHANGER", False),
         tool_change_position=_point(ini, "EMCIO", "TOOL_CHANGE_POSITION", (0, 3, 6, 9)),
-        heartbeat_s=ini.real("EMCMOT", "HEARTBEAT_TIMEOUT", DEFAULT_HEARTBEAT_S, minimum=0.02, maximum=10.0),
+        heartbeat_s=ini.real("EMCMOT", "HEARTBEAT_TIMEOUT", default_heartbeat_s(), minimum=0.02, maximum=10.0),
         comm_timeout_s=ini.real("EMCMOT", "COMM_TIMEOUT", 1.0, minimum=0.01),
         max_axis_velocities=[axes[a].max_velocity if a in axes else UNLIMITED for a in range(9)],
         max_axis_accelerations=[axes[a].max_acceleration if a in axes else UNLIMITED for a in range(9)],

@@ -36,6 +36,8 @@ class HostClient:
         self._socket: socket.socket | None = None
         self._rest = b""
         self._started: int | None = None
+        self.tells = True
+        """Print what the host has to say beside its answers; False for who reads its log (``log_path``)."""
 
     def start(self) -> int | None:
         """Start the host where there is none, as this process; the first request then waits until it answers."""
@@ -150,7 +152,7 @@ class HostClient:
         except (OSError, EOFError):
             self.close()
             raise HalError(f"the realtime host died while it did '{do}'; see {log_path()}", -3) from None
-        for note in answer["notes"]:
+        for note in answer["notes"] if self.tells else []:
             print(note, file=sys.stderr)
         if "error" in answer:
             raise HalError(answer["error"], answer["errno"])

@@ -27,7 +27,6 @@ from nml.errors import PyemcError
 from nml.namespace import shm_name
 
 SWEEP_SECONDS = 0.5  # host time between looks for dead components and messages
-NOTES_KEPT = 100  # of those that nobody has asked for
 
 
 class Server:
@@ -59,25 +58,20 @@ class Server:
     def look(self) -> None:
         """Gather what is to be told."""
         for text in hear():
-            self._note(text)
+            self.host.note(text)
         for name in self.host.hal.reap():
-            self._note(f"HAL: component '{name}' died without leaving; removed")
+            self.host.note(f"HAL: component '{name}' died without leaving; removed")
         for name, complaint in self.host.overworked():
             if name not in self._overworked:
                 self._overworked.add(name)
-                self._note(f"{complaint}. Give the thread a longer period, or less to do")
+                self.host.note(f"{complaint}. Give the thread a longer period, or less to do")
         for thread in self.host.hal.segment.threads() if self.host.realtime else []:
             if thread.overruns and thread.name not in self._late:
                 self._late.add(thread.name)
-                self._note(
+                self.host.note(
                     f"Unexpected realtime delay: thread '{thread.name}' began more than its period of "
                     f"{thread.period_ns} ns late. This is said once; latency-test shows what the machine can do"
                 )
-
-    def _note(self, text: str) -> None:
-        """For whoever asks next, and for the log."""
-        print(text, file=sys.stderr, flush=True)
-        self.host.notes = [*self.host.notes, text][-NOTES_KEPT:]
 
     def serve(self) -> None:
         """Until told to end; threads go on by themselves meanwhile."""

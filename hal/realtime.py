@@ -30,6 +30,7 @@ from nml.errors import HalError
 REALTIME_VARIABLE = "PYEMC_REALTIME"  # 0: ordinary threads even where realtime priority is allowed
 LATENCY_FILE = "/dev/cpu_dma_latency"
 TOP_PRIORITY = 90  # of the fastest thread; slower ones follow below
+NOTES_KEPT = 100  # of those that nobody has asked for
 HAL_BIT, HAL_FLOAT, HAL_S32, HAL_U32 = _shm.BIT, _shm.FLOAT, _shm.S32, _shm.U32
 HAL_S64, HAL_U64, HAL_PORT = _shm.S64, _shm.U64, _shm.PORT
 HAL_IN, HAL_OUT, HAL_IO, HAL_RO, HAL_RW = IN, OUT, IO, RO, RW
@@ -70,8 +71,8 @@ class Component:
 
     def _report(self, name: str, error: BaseException) -> None:
         text = "".join(traceback.format_exception(error))
-        print(f"HAL: function '{name}' raised and is not called again:\n{text}", file=sys.stderr, flush=True)
-        self.host.notes.append(f"HAL: function '{name}' raised {type(error).__name__}: {error}; it is not called again")
+        print(text, file=sys.stderr, flush=True)
+        self.host.note(f"HAL: function '{name}' raised {type(error).__name__}: {error}; it is not called again")
 
     def keep(self, thing: Any) -> None:
         """Hold a reference until the component is unloaded."""
@@ -112,6 +113,11 @@ class Host:
         self._simulated: Scheduler | None = None
         self._realtime = self._try_realtime()
 
+    def note(self, text: str) -> None:
+        """For the log (standard error), and for whoever asks next."""
+        print(text, file=sys.stderr, flush=True)
+        self.notes = [*self.notes, text][-NOTES_KEPT:]
+
     # ---- what the system allows ----
 
     @property
@@ -132,7 +138,7 @@ class Host:
         if not refused and not lock_memory():
             refused.append("locked memory")
         if refused:
-            self.notes.append(f"Note: the system does not allow {' and '.join(refused)}; timing depends on its load")
+            self.note(f"Note: the system does not allow {' and '.join(refused)}; timing depends on its load")
         if not refused:
             self._awake = stay_awake()
         return "realtime priority (SCHED_FIFO)" not in refused

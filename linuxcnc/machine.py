@@ -12,13 +12,14 @@ from pathlib import Path
 
 import linuxcnc
 from hal._shm import USER
+from hal.client import log_path
 from linuxcnc import takedown
 from linuxcnc.configuration import Configuration
 from linuxcnc.guard import Guard
 from linuxcnc.halsetup import SetupSession, set_up
 from linuxcnc.instance import Instance, ProcessRecord
 from linuxcnc.options import Talk
-from linuxcnc.process import SIGNALS, Child, start
+from linuxcnc.process import SIGNALS, Child, Log, start
 from linuxcnc.programs import Command
 from nml import clock
 from nml.channel import Channel
@@ -53,6 +54,8 @@ class Machine:
         self._guard = Guard(self._instance, self._nml_file)
         self._session = SetupSession(configuration.ini, configuration.overrides.keep_going)
         self._session.echo = talk >= Talk.COMMANDS
+        self._session.host.tells = False
+        self._host_log: Log | None = None
         self._host_record: ProcessRecord | None = None
         self._hal_is_set_up = False
 
@@ -68,6 +71,7 @@ class Machine:
         """Start everything but the display and wait until task is ready."""
         configuration = self.configuration
         self._record_host(self._session.host.start())
+        self._host_log = Log(log_path())
         self._spawn("task", configuration.task)
         self._spawn("io", configuration.io)
         if configuration.halui is not None:
@@ -154,6 +158,7 @@ class Machine:
     def check(self) -> None:
         """Pass on what the processes say; MachineError when one of them has ended."""
         self._guard.keep()
+        self._tell_of_host()
         if self._host_record is not None and not self._host_record.alive:
             raise MachineError(f"the realtime host (process {self._host_record.pid}) died")
         if clock.host_now() >= self._applications_due:
@@ -172,6 +177,11 @@ class Machine:
             self.report(line)
         raise MachineError(child.farewell())
 
+    def _tell_of_host(self) -> None:
+        """Pass on what the realtime host and its components say."""
+        for line in self._host_log.new_lines() if self._host_log else []:
+            self.report(line)
+
     def _do_without(self, service: Child) -> None:
         """A program beside the machine has ended; the machine goes on."""
         for line in service.new_output():
@@ -187,6 +197,7 @@ class Machine:
         """Bring the machine to rest, end every process, remove every trace; no signal interrupts it."""
         for number in END_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
+        self._tell_of_host()
         records = self._instance.recorded()
         records += self._programs_of_hal_files(records)
         problem = takedown.bring_to_rest(records, self._nml_file)

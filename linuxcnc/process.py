@@ -116,23 +116,34 @@ def show_as(words: list[str]) -> None:
 
 
 @dataclass(slots=True)
+class Log:
+    """A file that another process writes, passed on line by line."""
+
+    path: Path
+    shown: int = 0  # bytes that were passed on
+
+    def new_lines(self, *, rest: bool = False) -> list[str]:
+        """Whole lines written since the last call; with ``rest`` also an unfinished last one."""
+        with self.path.open("rb") as file:
+            file.seek(self.shown)
+            data = file.read()
+        end = len(data) if rest else data.rfind(b"\n") + 1
+        self.shown += end
+        return [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
+
+
+@dataclass(slots=True)
 class Child:
     """A started process and the file that takes its output."""
 
     name: str
     process: Process
-    log: Path
-    shown: int = 0  # bytes of the log that were passed on
+    log: Log
     said: float = float("-inf")  # host time of the last line that was passed on
 
     def new_output(self) -> list[str]:
-        """Whole lines written since the last call."""
-        with self.log.open("rb") as file:
-            file.seek(self.shown)
-            data = file.read()
-        end = len(data) if self.process.poll() is not None else data.rfind(b"\n") + 1
-        self.shown += end
-        lines = [line for line in data[:end].decode(errors="replace").splitlines() if line.strip()]
+        """Whole lines written since the last call; at its end all of them."""
+        lines = self.log.new_lines(rest=self.process.poll() is not None)
         if lines:
             self.said = clock.host_now()
         return lines
@@ -151,12 +162,12 @@ def start(name: str, command: Command, folder: Path, logs: Path, *, foreground: 
     with log.open("wb") as file:
         output = None if foreground else file
         if command.module is not None:
-            return Child(name, Forked(command, folder, None if foreground else file.fileno()), log)
+            return Child(name, Forked(command, folder, None if foreground else file.fileno()), Log(log))
         stdin = None if foreground else subprocess.DEVNULL
         process = subprocess.Popen(
             command.words, cwd=folder, stdin=stdin, stdout=output, stderr=output, start_new_session=not foreground
         )
-        return Child(name, process, log)
+        return Child(name, process, Log(log))
 
 
 def _how_it_ended(code: int) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import linuxcnc
-from emctask.config import DEFAULT_HEARTBEAT_S
+from emctask.config import default_heartbeat_s
 from tests.process.test_running_programs import ACCELERATION, PERIOD, VELOCITY
 from tests.support import verify
 from tests.support.machine import Run, copy_mill, processes, running, traces, wait_until
@@ -77,7 +77,7 @@ def test_motion_alone_notices_that_task_is_dead_or_halted(tmp_path, blow):
         assert run.finish() == 1
     last_moved = np.flatnonzero(np.diff(samples, axis=0).any(axis=1))[-1]
     noticed, stopping = (
-        (DEFAULT_HEARTBEAT_S + RECORDER_LAG_S) * SPEED / PERIOD,
+        (default_heartbeat_s() + RECORDER_LAG_S) * SPEED / PERIOD,
         max(VELOCITY) / min(ACCELERATION) / PERIOD,
     )
     assert before < last_moved < before + CATCHING_UP * noticed + stopping

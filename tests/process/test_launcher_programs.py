@@ -75,6 +75,18 @@ def test_the_shutdown_file_is_executed_when_the_machine_is_at_rest(tmp_path):
     assert traces() == []
 
 
+def test_what_the_realtime_host_has_to_say_reaches_the_terminal_once(tmp_path):
+    script(
+        tmp_path / "short",
+        f"#!{sys.executable}\nimport hal, os\nc = hal.component('short')\nc.ready()\nos.kill(os.getpid(), 9)\n",
+    )
+    script(tmp_path / "screen", "#!/bin/sh\nwhile halcmd list comp | grep -q short; do sleep 0.1; done\n")
+    ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"}, hal="loadusr ./short\nloadusr -w sleep 0.5\n")
+    run = Run(ini, speed=10.0)
+    assert run.finish() == 0, run.errors
+    assert run.errors.count("HAL: component 'short' died without leaving; removed") == 1
+
+
 def test_a_start_that_fails_in_a_hal_file_names_what_else_is_wrong(tmp_path):
     ini = copy_mill(tmp_path, changes={"JOINT_0.HOME": "9999"}, hal="setp no.such-pin 1\n")
     run = Run(ini, speed=10.0)

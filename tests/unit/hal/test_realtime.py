@@ -196,8 +196,8 @@ def test_a_python_component_that_raises_is_stopped_and_named(
     for _ in range(3):
         call(funct.code, funct.arg, 1000)
     errors = capfd.readouterr().err
-    assert errors.count("function 'doubler' raised and is not called again") == 1
-    assert "ValueError: negative" in errors
+    assert errors.count("HAL: function 'doubler' raised ValueError: negative; it is not called again") == 1
+    assert "Traceback" in errors
 
 
 def test_what_a_module_provides_goes_with_it(host: Host, tmp_path: Path) -> None:
