@@ -48,8 +48,8 @@ def prepare(folder: Path) -> subprocess.Popen[str]:
     script = "set -euo pipefail; source scripts/prepare.bash; prepare run; echo ready"
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     return subprocess.Popen(
-        ["bash", "-c", script], cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        start_new_session=True,
+        ["env", "--default-signal=INT,TERM", "bash", "-c", script],  # a test run in the background ignores SIGINT
+        cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )
 
 
