@@ -18,7 +18,7 @@ RESTORED_G = (3, 4, 6, 7, 8, 9, 10, 11, 13, 14, 15, 16)
 """Places in ``active_g_codes`` that M72 restores, in the order of its line; units (5) have one of their own before."""
 UNITS, CONTROL, SPINDLE = 5, 11, 2
 RESTORED_M = (4, 5, 6, 7, 8)
-"""Places in ``active_m_codes`` that have lines of their own afterwards: mist, flood, overrides, adaptive feed, feed hold."""
+"""Places in ``active_m_codes``: mist, flood, overrides, adaptive feed, feed hold. The first M code is on the line, others after it."""
 
 
 cdef tuple active_g_codes(State s):
@@ -101,8 +101,9 @@ def restoring_lines(saved, now):
             line += f" G{g[k] // 10}" + (f".{g[k] % 10}" if g[k] % 10 else "")
     if g[CONTROL] == 640 and (g_now[CONTROL] != 640 or (tolerance, naivecam) != settings_now[3:]):
         line += f" G64 P{tolerance:f} Q{naivecam:f}"
-    if m[SPINDLE] != m_now[SPINDLE]:
-        line += f"M{m[SPINDLE]}"
+    m_codes = [f"M{m[k]}" for k in (SPINDLE, *RESTORED_M) if m[k] not in (-1, m_now[k])]
+    if m_codes:
+        line += m_codes.pop(0)
     if line:
         lines.append(line)
-    return lines + [f"M{m[k]}" for k in RESTORED_M if m[k] not in (-1, m_now[k])]
+    return lines + m_codes

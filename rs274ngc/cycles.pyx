@@ -261,7 +261,7 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
         return fail_word(s, "Cannot do zero repeats of cycle", W_L)
     if repeats > REPEATS_MAX:
         return fail_word(s, "Too many repeats of cycle", W_L)
-    z = value_or(b, axis_words[h.third], s.cycle_z)
+    z = in_radius(s, b, h.third, s.cycle_z)
     r = value_or(b, W_R, s.cycle_r)
     s.cycle_z, s.cycle_r = z, r
     if not s.in_cycles:

@@ -7,11 +7,15 @@ from typing import Any
 
 from rs274ngc.canon import Canon
 
-ASKS = ("get_", "wait", "user_command_exists")
+AT_ONCE = (
+    "get_", "wait", "user_command_exists", "message", "print_text", "log", "select_plane", "select_tool",
+    "set_tool_table_entry",
+)  # fmt: skip
+"""How the calls begin that need not wait for a move: questions, words to the operator, what only prepares."""
 
 
 class HeldCanon(Canon):
-    """Keeps calls in ``held`` as (name, arguments) for its owner to make; questions go to the real canon at once."""
+    """Keeps calls in ``held`` as (name, arguments) for its owner to make; ``AT_ONCE`` goes to the real canon."""
 
     def __init__(self, canon: Canon) -> None:
         self.canon = canon
@@ -31,8 +35,8 @@ def holding(name: str) -> Callable[..., None]:
     return method
 
 
-def asking(name: str) -> Callable[..., Any]:
-    """A method that passes a question on."""
+def passing(name: str) -> Callable[..., Any]:
+    """A method that makes its call at once."""
 
     def method(self: HeldCanon, *arguments: Any) -> Any:
         return getattr(self.canon, name)(*arguments)
@@ -42,4 +46,4 @@ def asking(name: str) -> Callable[..., Any]:
 
 for _name in dir(Canon):
     if callable(getattr(Canon, _name)) and not _name.startswith("_"):
-        setattr(HeldCanon, _name, asking(_name) if _name.startswith(ASKS) else holding(_name))
+        setattr(HeldCanon, _name, passing(_name) if _name.startswith(AT_ONCE) else holding(_name))

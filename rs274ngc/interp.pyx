@@ -17,6 +17,7 @@ from rs274ngc.codes cimport check, enhance, run
 from rs274ngc.compensation cimport drop
 from rs274ngc.context cimport active_g_codes, active_m_codes, active_settings, restore
 from rs274ngc.flow cimport Flow
+from rs274ngc.modal cimport STEP_MOTION
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
 from rs274ngc.plugin import plugin_of
@@ -438,7 +439,7 @@ cdef class Interpreter:
                     return FINISH
             if s.block.steps == 0:
                 break
-            if s.block.steps != 1ULL << 26:     # anything besides a plain move may have changed a mode
+            if s.block.steps != 1ULL << STEP_MOTION:     # anything besides a plain move may have changed a mode
                 s.modal_version += 1
             s.last_setting, s.last_change = s.block.g[0], s.block.m[6]
             run(s, &s.block)

@@ -45,8 +45,6 @@ cdef int check_orient(State s, Block* b, int code) except -1:
         return fail_word(s, "P value must be 0,1,or 2 with M19", W_P)
     if has(b, W_R) and not 0.0 <= b.value[W_R] <= 360.0:
         return fail_word(s, "R value must be within 0..360 with M19", W_R)
-    if has(b, W_Q) and b.value[W_Q] <= 0.0:
-        return fail_word(s, "Q word with M19 requires a value > 0", W_Q)
     return 0
 
 
@@ -58,6 +56,8 @@ cdef int orient(State s, Block* b, int code) except -1:
         angle = value_or(b, W_R, 0.0) + s.orient_offset
         s.canon.orient_spindle(n, angle - 360.0 * floor(angle / 360.0) if angle >= 360.0 else angle, <int>floor(value_or(b, W_P, 0.0) + 0.5))
     if has(b, W_Q):
+        if b.value[W_Q] <= 0.0:
+            return fail_word(s, "Q word with M19 requires a value > 0", W_Q)
         s.canon.wait_spindle_orient_complete(n, b.value[W_Q])
     s.turning[n] = STOPPED
     return 0
@@ -138,7 +138,8 @@ cdef int output(State s, Block* b, int code) except -1:
     """M62 to M65 P: a digital output on or off, with motion or at once"""
     cdef int index
     if s.comp_side != SIDE_OFF and code <= 63:
-        return fail(s, "Cannot set motion digital output with cutter radius compensation on", b.m_at[5])
+        what = "output" if code == 62 else "digital output"
+        return fail(s, f"Cannot set motion {what} with cutter radius compensation on", b.m_at[5])
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot set auxiliary digital output with cutter radius compensation on", b.m_at[5])
     if not has(b, W_P) or not 0.0 <= b.value[W_P] < 2.0e9:

@@ -178,8 +178,10 @@ cdef int set_control(State s, Block* b, int code) except -1:
         return fail(s, "Cannot change control mode with cutter radius compensation on", b.g_at[13])
     if code == 640:
         s.control_mode = CONTINUOUS
-        s.tolerance = value_or(b, W_P, 0.0)
+        s.tolerance = max(value_or(b, W_P, 0.0), 0.0)
         s.naivecam_tolerance = value_or(b, W_Q, s.tolerance)
+        if s.naivecam_tolerance < 0.0:
+            s.naivecam_tolerance = s.tolerance
     else:
         s.control_mode = CANON_EXACT_PATH if code == 610 else CANON_EXACT_STOP
     send_control(s)

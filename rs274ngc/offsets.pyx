@@ -232,6 +232,7 @@ cdef int reload_tools(State s, Block* b) except -1:
     if s.current_tool > 0:
         return fail(s, f"G10 L0 not allowed with loaded tool <{s.current_tool}>\n", b.g_at[0])
     s.canon.reload_tooldata()
+    s.waiting |= WAIT_TOOL
     return 0
 
 

@@ -19,6 +19,7 @@ G_GROUPS = {
     7: "Group 7: cutter compensation",
     8: "Group 8: tool length",
     10: "Group 10: retract mode of cycles",
+    11: "Group 11: G92 cancelled and used again",
     12: "Group 12: coordinate system",
     13: "Group 13: path control",
     14: "Group 14: spindle mode",

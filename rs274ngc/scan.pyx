@@ -551,7 +551,9 @@ cdef int read_g(State s, Block* b, int* at, int start) except -1:
         group = 1
     if group < 0:
         return fail(s, "Unknown g code used", start)
-    if b.g[group] >= 0:
+    if code == 800 and b.g[group] >= 0:     # beside another motion G80 says nothing
+        return 0
+    if b.g[group] >= 0 and b.g[group] != 800:
         return fail(s, "Two g codes used from same modal group", start)
     b.g[group] = code
     b.g_at[group] = start

@@ -178,6 +178,20 @@ AWKWARD = {
         f3.456 s12
         o1 call
         g0 x1""",
+    "restoring overrides, coolant and plane": """\
+        m70
+        m53 p0
+        m50 p0
+        g19
+        m72
+        m70
+        m7
+        g18 g91
+        m72
+        m52 p1
+        m70
+        m52 p0
+        m72""",
     "the label of a condition at two lines": """\
         o1 if [1]
         o1 endif
@@ -225,6 +239,42 @@ AWKWARD = {
         ()
         /n7 g0 x3
         g4 p-2""",
+    "a motion beside G80": """\
+        g81 x1 z-1 r1
+        g80 g0 x2
+        g1 g80 x3
+        g80 g80""",
+    "giving up G92 beside another code of group 0": """\
+        g92 x4 y1
+        g92.2 g53 g0 x1
+        g92.3 g28 x2
+        g10 l2 p1 x5 g92.1
+        g0 x1 g92.1""",
+    "two codes about G92 on a line": "g92.1 g92.2",
+    "negative tolerances": """\
+        g64 p-1
+        g64 p-1 q.3
+        g64 p.1 q-1""",
+    "a turn of the spindle with a negative timeout": "m19 q-1 r2",
+    "drilling along X in diameters": """\
+        g7 g19 m3 s100
+        g73 x-2.4 y-2 z-2.3 q1.8 r4.9
+        g91 g86 x-2.4 y-2 z-2.3 p1 r4.9 l2""",
+    "reading the tool table anew while a tool offset is in force": """\
+        g43 h1
+        g10 l0
+        g91 g1 x1 z1
+        g10 l11 p1 z3""",
+    "what is said and prepared while a compensated move is held back": """\
+        g41 d7
+        g1 x7
+        (msg,held)
+        (debug,#5420)
+        t1
+        g17
+        g10 l1 p1 x3
+        g1 x9
+        m62 p1""",
     "orienting a spindle that turns": """\
         m3 s100
         m19 r10
