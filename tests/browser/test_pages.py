@@ -305,11 +305,10 @@ def test_the_grid_and_the_icon_of_the_ini_file_are_used(tmp_path: Path, open_scr
     with web_mill(tmp_path, changes={"DISPLAY.POSITION_OFFSET": keys}) as (_, port):
         screen = open_screen(port, panel="path")
         grid = screen.page.get_by_label("Grid", exact=True)
-        assert grid.locator("option").all_inner_texts() == ["No grid", "5 mm", "1 in"]
+        options = grid.locator("option")
+        wait_until(lambda: options.all_inner_texts() == ["No grid", "5 mm", "1 in"], "the grids of the INI file")
         grid.select_option("25.4")
-        icon = screen.page.get_attribute("link[rel=icon]", "href")
-        assert icon is not None
-        assert icon.startswith("data:image/svg+xml;base64,")
+        screen.page.wait_for_selector("link[rel=icon][href^='data:image/svg+xml;base64,']", state="attached")
 
 
 def test_the_panel_of_the_guide_appears_in_the_rail(mill: int, open_screen: Any) -> None:

@@ -126,7 +126,7 @@ export class Panels {
   /** @param {Panel} panel @param {HTMLElement} main */
   #mount(panel, main) {
     if (this.#mounted.has(panel.id)) return;
-    const section = h("section", { id: `panel-${panel.id}`, role: "tabpanel", "aria-labelledby": `tab-${panel.id}`, class: `panel-${panel.id}` });
+    const section = h("section", { id: `panel-${panel.id}`, role: "tabpanel", tabindex: 0, "aria-labelledby": `tab-${panel.id}`, class: `panel-${panel.id}` });
     main.append(section);
     const mounted = Promise.resolve(panel.mount(section, this.app)).catch((error) => {
       console.error(error);
