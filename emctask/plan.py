@@ -54,6 +54,7 @@ class Plan:
         self.canon = canon
         self.sequencer = sequencer
         self.interp = Interpreter(canon, ini)
+        self.interp.repeats_main = True
         self.interp.init()
         self.source = Source.NOTHING
         self.waiting_for_synch = False

@@ -50,6 +50,7 @@ class RunFromLine:
         self._before = before
         self.rehearsal = RehearsalCanon(machine)
         self._use(self.rehearsal)
+        interp.repeats_main = False
 
     def _use(self, canon: RehearsalCanon | TaskCanon) -> None:
         self._interp.canon = self._interp.state.canon = canon
@@ -57,6 +58,7 @@ class RunFromLine:
     def leave(self) -> None:
         """The interpreter speaks to the machine again; cutter compensation must be off."""
         self._use(self._machine)
+        self._interp.repeats_main = True
 
     # --- The dry run
 

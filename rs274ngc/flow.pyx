@@ -486,21 +486,27 @@ cdef class Flow:
             self.pop()
 
     def end_subprogram(self):
-        """M99: the caller, or the next of its repetitions, goes on; in the main program its first line."""
+        """M99: the caller, or the next of its repetitions, goes on; in the main program its first line.
+
+        False: it ends the main program, for this interpreter does not repeat programs.
+        """
         cdef State s = self.s
         if s.frame.sub and not s.frame.fanuc:
             fail(s, "'O.... endsub' or 'O.... return' must follow 'O.... sub' subroutine definition")
         if not s.frame.sub:
             if self.source is not None:
+                if not s.interp.repeats_main:
+                    return False
                 self.jump(0, 0)
                 s.frame.labels.clear()
-            return
+            return True
         s.frame.repeats -= 1
         if s.frame.repeats > 0:
             s.frame.labels.clear()
             self.jump(s.frame.body, s.frame.body_line)
         else:
             self.pop()
+        return True
 
 
 ONCE = ("if", "while", "repeat")

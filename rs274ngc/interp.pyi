@@ -17,6 +17,7 @@ class Interpreter:
     flow: Any
     canon: Canon
     parameter_file: Any
+    repeats_main: bool
     line: int
     file: str
     block_text: str

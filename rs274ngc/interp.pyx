@@ -42,6 +42,7 @@ cdef class Interpreter:
     cdef readonly Flow flow
     cdef public Canon canon
     cdef public object parameter_file
+    cdef public bint repeats_main   # M99 in the main program begins it again; else it ends it
     cdef bint percent, stop_after_block
     cdef readonly int sequence_number
 
@@ -363,10 +364,10 @@ cdef class Interpreter:
         return 0
 
     def end_subprogram(self):
-        """M99, for its handler."""
+        """M99, for its handler: False if the program is over."""
         if not self.state.fanuc_subs:
             fail(self.state, "DISABLE_FANUC_STYLE_SUB set in INI file, but found m99")
-        self.flow.end_subprogram()
+        return self.flow.end_subprogram()
 
     def run_aside(self, text):
         """Run a line of plain, not remapped codes in the middle of another."""

@@ -266,6 +266,7 @@ cdef int user_code(State s, Block* b, int code) except -1:
 
 
 cdef int subprogram_end(State s, Block* b, int code) except -1:
-    """M99"""
-    s.interp.end_subprogram()
+    """M99; where programs are not repeated, the end of the main program"""
+    if not s.interp.end_subprogram():
+        program_end(s, b, 2)
     return 0

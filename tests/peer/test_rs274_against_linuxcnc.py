@@ -40,6 +40,7 @@ STOCK_REMAPS = (
 """Configurations whose codes are NGC procedures and Python functions, and their programs."""
 
 AWKWARD = {
+    "M99 in the main program": "g0 x1\nm99\ng0 x2",
     "rotating the active system while G92 is in force": """\
         g0 x3 y4 z1
         g92 x1 y2

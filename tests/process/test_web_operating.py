@@ -248,6 +248,6 @@ def test_picture_and_forecast_begin_as_the_machine_stands(client):
     client.upload("bare.ngc", "G1 X10\nM2\n")
     client.call("program.open", path="bare.ngc")
     client.wait(lambda state: state["preview"]["state"] == "whole", "a whole picture, for the feed is the machine's")
-    client.wait(lambda state: state["forecast"] and 1.0 < state["forecast"]["seconds"] < 1.2, "ten mm at the machine's feed")
+    client.wait(lambda state: state["forecast"] and 1.0 < state["forecast"]["seconds"] < 1.2, "ten mm at this feed")
     client.call("mdi.run", text="G20")
     client.wait(lambda state: state["forecast"]["seconds"] > 25.0, "ten inches take longer")

@@ -51,6 +51,20 @@ def test_endless_recursion_is_refused(interp, tmp_path):
         interp.run_file()
 
 
+def test_m99_ends_a_main_program_or_begins_it_again_on_a_machine(interp, tmp_path):
+    program = tmp_path / "round.ngc"
+    program.write_text("g91 g0 x1\nm99\ng0 y5\n")
+    interp.open(program)
+    assert interp.run_file() == INTERP_EXIT
+    assert interp.state.position[:2] == (1.0, 0.0)
+    interp.repeats_main = True
+    interp.open(program)
+    for _ in range(6):
+        interp.read()
+        assert interp.execute() == INTERP_OK
+    assert interp.state.position[:2] == (4.0, 0.0)
+
+
 @pytest.mark.parametrize("text", ["g0 x" + "[" * 200, "g0 x" + "-" * 200 + "1", "#" * 200 + "1=1"])
 def test_deep_nesting_is_refused(interp, text):
     with pytest.raises(InterpError):
