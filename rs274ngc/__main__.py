@@ -17,6 +17,7 @@ from rs274ngc.printer import PrintCanon
 
 CONTINUE, MDI, STOP = 0, 1, 2
 PROMPT = "READ => "
+STDOUT = 1
 LONG_BYTES = 2_000_000
 """Programs of this size get a progress bar."""
 
@@ -116,7 +117,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command; 0: the program was right."""
     options = parser().parse_args(arguments)
     errors: list[InterpError] = []
-    output = 1
+    output = STDOUT
     try:
         if options.input and (options.stats or options.json or options.plot):
             return show_figures(options)
@@ -148,7 +149,7 @@ def main(arguments: list[str] | None = None) -> int:
         interp.exit()
         canon.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), STDOUT)
         return 1
     except (ConfigError, InterpError) as error:
         print(error, file=sys.stderr)
@@ -159,6 +160,9 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         canon.flush()
         return 130
+    finally:
+        if output != STDOUT:
+            os.close(output)
     return 1 if errors else 0
 
 

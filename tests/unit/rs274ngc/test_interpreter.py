@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from nml.errors import ConfigError, InterpError
+from rs274ngc import __main__ as rs274
 from rs274ngc import varfile
 from rs274ngc.codes import TABLE
 from rs274ngc.interp import INTERP_EXECUTE_FINISH, INTERP_EXIT, INTERP_OK, Interpreter
@@ -142,3 +143,12 @@ def test_every_code_has_a_summary():
 def test_the_reference_of_codes_is_current():
     page = Path(__file__).parents[3] / "docs" / "gcode.md"
     assert page.read_text() == reference()
+
+
+def test_the_command_closes_its_output(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.ngc").write_text("g0 x1\nm2\n")
+    before = os.listdir("/proc/self/fd")
+    assert rs274.main(["-g", "part.ngc", "output"]) == 0
+    assert os.listdir("/proc/self/fd") == before
+    assert "STRAIGHT_TRAVERSE(1.0000" in (tmp_path / "output").read_text()
