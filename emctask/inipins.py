@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from emctask.task import Task
 
 COMPONENT, PREFIX = "inihal", "ini"
-LOOK_S = 0.02  # host time between two looks at the pins
+LOOK_S = 0.02  # host time between two looks at the pins while no command waits
 
 Apply = Callable[["Task"], None]
 
@@ -144,10 +144,10 @@ class IniPins:
         self._component.ready()
         self._next_look = 0.0
 
-    def look(self, task: Task) -> None:
-        """Take over what has changed."""
+    def look(self, task: Task, *, at_once: bool) -> None:
+        """Take over what has changed; ``at_once`` where a command waits: what was set before it holds for it."""
         now = clock.host_now()
-        if now < self._next_look:
+        if now < self._next_look and not at_once:
             return
         self._next_look = now + LOOK_S
         component = self._component

@@ -18,21 +18,23 @@ def setp(pin: str, value: float) -> None:
     assert halcmd("setp", f"ini.{pin}", str(value)) == ""
 
 
-def test_pins_change_limits_and_speeds_of_the_running_machine(tmp_path):
+def test_pins_change_limits_and_speeds_of_the_running_machine_for_the_next_command(tmp_path):
     with at_desk(tmp_path) as desk:
         desk.ready(linuxcnc.MODE_MDI)
         setp("0.max_limit", 20)
         setp("x.max_limit", 20)
         setp("0.max_velocity", 1.5)
         setp("x.max_velocity", 1)
-        desk.until(lambda s: s.joint[0]["max_position_limit"] == 20.0, "limit of joint 0")
-        desk.until(lambda s: s.axis[0]["max_position_limit"] == 20.0, "limit of axis X")
         assert desk.mdi("G53 G0 X21") == ERROR
         assert "would exceed X's positive limit" in desk.texts[-1]
-        desk.command.mdi("G53 G0 X19")
-        desk.until(lambda s: s.current_vel == pytest.approx(1.0, rel=0.01), "the new speed of X")
-        assert desk.command.wait_complete(PATIENCE) == DONE
-        assert desk.look().current_vel == 0.0
+        desk.until(lambda s: s.joint[0]["max_position_limit"] == 20.0, "limit of joint 0")
+        desk.until(lambda s: s.axis[0]["max_position_limit"] == 20.0, "limit of axis X")
+        for speed, end in ((1.0, 19), (0.5, 15)):
+            setp("x.max_velocity", speed)
+            desk.command.mdi(f"G53 G0 X{end}")
+            desk.until(lambda s, speed=speed: s.current_vel == pytest.approx(speed, rel=0.01), "the new speed of X")
+            assert desk.command.wait_complete(PATIENCE) == DONE
+            assert desk.look().current_vel == 0.0
 
 
 @pytest.mark.parametrize(
