@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import hal
 import linuxcnc
 from tests.support.desk import DONE, ERROR, at_desk
 from tests.support.halsession import halcmd
@@ -30,7 +31,7 @@ def test_pins_change_limits_and_speeds_of_the_running_machine_for_the_next_comma
         desk.until(lambda s: s.joint[0]["max_position_limit"] == 20.0, "limit of joint 0")
         desk.until(lambda s: s.axis[0]["max_position_limit"] == 20.0, "limit of axis X")
         for speed, end in ((1.0, 19), (0.5, 15)):
-            setp("x.max_velocity", speed)
+            hal.set_p("ini.x.max_velocity", str(speed))
             desk.command.mdi(f"G53 G0 X{end}")
             desk.until(lambda s, speed=speed: s.current_vel == pytest.approx(speed, rel=0.01), "the new speed of X")
             assert desk.command.wait_complete(PATIENCE) == DONE
