@@ -106,10 +106,7 @@ def test_the_library_moves_the_wall_clock_and_no_other(wall_clock: Callable[[int
     assert abs(steady - time.monotonic()) < HOUR / 2
 
 
-def test_a_program_runs_through_jumps_of_the_wall_clock(
-    tmp_path: Path, wall_clock: Callable[[int], None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PYEMC_REALTIME", "0")  # whether the servo thread is late is told elsewhere
+def test_a_program_runs_through_jumps_of_the_wall_clock(tmp_path: Path, wall_clock: Callable[[int], None]) -> None:
     with running(copy_mill(tmp_path, hal="net never motion.digital-in-00\n")) as run:
         run.port()
         desk = Desk(tmp_path)
