@@ -198,6 +198,9 @@ class Machine:
         for number in END_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
         self._tell_of_host()
+        for service in self._beside:
+            for line in service.new_output():
+                self.report(line)
         records = self._instance.recorded()
         records += self._programs_of_hal_files(records)
         problem = takedown.bring_to_rest(records, self._nml_file)

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,8 @@ from tests.support.machine import ROOT, Run, copy_mill, processes, running, trac
 
 pytestmark = pytest.mark.process
 
-SCREEN = "#!/bin/sh\nfor i in 1 2 3 4 5 6 7 8 9 10; do [ -e told ] && exit 0; sleep 0.2; done\nexit 9\n"
-"""A display that lives until the file ``told`` is there, at most 2 s."""
+SCREEN = "#!/bin/sh\nfor i in $(seq 600); do [ -e told ] && exit 0; sleep 0.1; done\nexit 9\n"
+"""A display that lives until the file ``told`` is there, at most a minute."""
 
 
 def script(path, text):
@@ -29,7 +30,7 @@ def started(tmp_path, section, screen=SCREEN):
 
 
 def test_applications_start_with_their_arguments_in_the_folder_of_the_ini_file(tmp_path):
-    script(tmp_path / "app", '#!/bin/sh\necho "$PWD $*" > told\n')
+    script(tmp_path / "app", '#!/bin/sh\necho "$PWD $*" > all\nmv all told\n')
     run = started(tmp_path, "[APPLICATIONS]\nAPP = ./app one 'two words'\nDELAY = 0.1")
     assert run.finish() == 0, run.errors
     assert (tmp_path / "told").read_text() == f"{tmp_path} one two words\n"
@@ -44,16 +45,22 @@ def test_the_machine_runs_without_an_application_that_is_missing_or_fails(tmp_pa
     assert "broken" in run.errors
 
 
+def listed() -> dict[str, str]:
+    """Command lines of the machine's processes by their names."""
+    found = {}
+    for pid, command in processes():
+        with suppress(OSError):  # it may have ended meanwhile
+            found[Path(f"/proc/{pid}/comm").read_text().strip()] = command.strip()
+    return found
+
+
 def test_every_process_is_listed_under_its_own_name_and_command_line(tmp_path):
     ini = copy_mill(tmp_path)
     with running(ini) as run:
         run.port()
-        listed = {}
-        for pid, command in processes():
-            listed[Path(f"/proc/{pid}/comm").read_text().strip()] = command.strip()
-    for name in ("milltask", "io", "linuxcncrsh"):
-        assert listed[name].startswith(f"{name} -ini /")
-    assert listed["linuxcnc-guard"] == "linuxcnc-guard"
+        for name in ("milltask", "io", "linuxcncrsh"):
+            wait_until(lambda start=f"{name} -ini /", name=name: listed().get(name, "").startswith(start), name)
+        wait_until(lambda: listed().get("linuxcnc-guard") == "linuxcnc-guard", "the guard")
 
 
 def test_applications_end_with_the_machine(tmp_path):
@@ -78,10 +85,12 @@ def test_the_shutdown_file_is_executed_when_the_machine_is_at_rest(tmp_path):
 def test_what_the_realtime_host_has_to_say_reaches_the_terminal_once(tmp_path):
     script(
         tmp_path / "short",
-        f"#!{sys.executable}\nimport hal, os\nc = hal.component('short')\nc.ready()\nos.kill(os.getpid(), 9)\n",
+        f"#!{sys.executable}\nimport hal, os\nc = hal.component('short')\nc.ready()\n"
+        "open('told', 'w').close()\nos.kill(os.getpid(), 9)\n",
     )
-    script(tmp_path / "screen", "#!/bin/sh\nwhile halcmd list comp | grep -q short; do sleep 0.1; done\n")
-    ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"}, hal="loadusr ./short\nloadusr -w sleep 0.5\n")
+    script(tmp_path / "waiting", SCREEN)
+    script(tmp_path / "screen", "#!/bin/sh\nwhile halcmd list comp | grep -q short; do sleep 0.1; done\nsleep 0.5\n")
+    ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"}, hal="loadusr ./short\nloadusr -w ./waiting\n")
     run = Run(ini, speed=10.0)
     assert run.finish() == 0, run.errors
     assert run.errors.count("HAL: component 'short' died without leaving; removed") == 1
