@@ -226,9 +226,9 @@ def steps_until(server: InProcess, connections: int) -> None:
 @pytest.mark.parametrize(
     ("limits", "traffic"),
     [
-        (Limits(silent=0.1), b""),
-        (Limits(unfinished=0.1), request(12) + request(1)[:7]),
-        (Limits(unfinished=0.1), request(2, 1, 4, 100) + bytes(50)),
+        (Limits(silent=0.5), b""),
+        (Limits(unfinished=0.5), request(12) + request(1)[:7]),
+        (Limits(unfinished=0.5), request(2, 1, 4, 100) + bytes(50)),
     ],
     ids=["silent from the start", "half a request", "half a body"],
 )

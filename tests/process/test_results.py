@@ -118,7 +118,7 @@ def test_a_joint_is_homed_when_the_order_is_done(mill):
 
 def test_a_setting_is_done_while_a_program_runs_and_the_program_when_it_has_ended(mill, tmp_path):
     part = tmp_path / "part.ngc"
-    part.write_text("G21 G90 G94 F3000\nG4 P2\nG1 X1\nM2\n")
+    part.write_text("G21 G90 G94 F3000\nG4 P20\nG1 X1\nM2\n")
     operator, pendant = linuxcnc.command(), linuxcnc.command()
     operator.mode(linuxcnc.MODE_AUTO)
     assert operator.result()

@@ -186,7 +186,7 @@ def test_a_typed_stop_has_nothing_to_hold_and_does_not_keep_the_next_line_waitin
 
 def test_the_executing_move_is_known_by_its_line(desk):
     desk.ready(linuxcnc.MODE_AUTO)
-    desk.program("G21 G90 F300\nG1 X1\nG1 X1.5\nM8\nG1 X20\nM2\n")
+    desk.program("G21 G90 F300\nG1 X1\nG1 X1.5\nM8\nG1 X100\nM2\n")
     desk.run()
     desk.until(lambda s: s.position[0] > 2.0, "the last move")
     assert (desk.stat.motion_line, desk.stat.motion_id) == (5, 5)

@@ -290,8 +290,12 @@ def test_with_a_certificate_everything_is_encrypted(tmp_path):
     with web_mill(tmp_path, extra=extra) as (run, port):
         trusted = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
         connection = http.client.HTTPSConnection("localhost", port, timeout=PATIENCE, context=trusted)
-        connection.request("GET", "/health")
-        assert json.loads(connection.getresponse().read()) == {"machine": "ok"}
+
+        def health():
+            connection.request("GET", "/health")
+            return json.loads(connection.getresponse().read())
+
+        wait_until(lambda: health() == {"machine": "ok"}, "healthy")
         with pytest.raises((http.client.HTTPException, OSError)):
             ask(port, "GET", "/health")
         run.stop()
