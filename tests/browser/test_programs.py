@@ -87,7 +87,7 @@ def test_a_running_program_is_paused_overridden_resumed_and_aborted(mill: int, o
         wait_until(lambda: screen.position("X") > 1, "cutting")
         screen.page.click("#pause:enabled")
         screen.wait_state("Paused")
-        observer.wait(lambda state: abs(state["current_vel"]) < 1e-9, "at rest")
+        observer.wait(lambda state: state["position"][0] > 1 and abs(state["current_vel"]) < 1e-9, "at rest")
         rest = observer.state["position"][0]
         assert 1 < rest < 60
         screen.page.get_by_role("slider", name="Feed", exact=True).fill("0.4")
@@ -161,8 +161,8 @@ def test_a_new_program_is_written_in_the_browser(mill: int, open_screen: Any, tm
     screen.page.click("#editor-save")
     screen.page.fill("dialog[open] input", "new.ngc")
     screen.press("OK", "dialog[open]")
-    wait_until(lambda: (tmp_path / "nc" / "new.ngc").exists(), "saved")
-    assert (tmp_path / "nc" / "new.ngc").read_text() == "G0 X3\nM2\n"
+    saved = tmp_path / "nc" / "new.ngc"
+    wait_until(lambda: saved.exists() and saved.read_text() == "G0 X3\nM2\n", "saved")
 
 
 def test_a_tool_is_changed_by_hand_when_the_program_asks(tmp_path: Path, open_screen: Any) -> None:
@@ -176,7 +176,7 @@ def test_a_tool_is_changed_by_hand_when_the_program_asks(tmp_path: Path, open_sc
         screen.picture("tool-change.png")
         screen.press("Tool is in", "dialog[open]")
         screen.page.wait_for_selector("dialog[open]:has-text('T3')")
-        assert screen.position("X") == pytest.approx(5)
+        screen.wait_position("X", 5)
         screen.press("Tool is in", "dialog[open]")
         screen.wait_state("Ready")
         screen.go("tools")

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import stock_machine
+from tests.support.compared import each_time
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -82,6 +83,7 @@ def chosen(lines: list[str], beginnings: tuple[str, ...]) -> list[str]:
     return [OF_OTHER_CODE.sub("", line) for line in lines if line.startswith(beginnings) and STANDING not in line]
 
 
+@each_time
 def test_the_log_has_linuxcncs_lines_for_configuration_and_work(tmp_path: Path) -> None:
     theirs = stock_machine.display(SESSION, changes=machine("motion-logger"))
     ours = stock_machine.ours(tmp_path, SESSION, changes=machine(f"{sys.executable} -m emcmot.motionlogger"))

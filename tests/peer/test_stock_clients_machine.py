@@ -21,7 +21,7 @@ from tests.support.stock import DRIVE, StockClient, needs_module
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_module]
 
 PROGRAM = """\
-G21 G90 G64 P0.01 F1200
+G21 G90 G64 P0.01 F200
 G0 X0 Y0 Z0
 G1 X5 Y0
 G2 X10 Y5 I0 J5
@@ -206,7 +206,7 @@ def test_the_stock_linuxcncrsh_drives_the_machine(machine: Machine) -> None:
     talk.say("set mode manual")
     for joint in range(3):
         talk.say(f"set home {joint}")
-    talk.say("get joint_homed", "HOMED")
+    talk.say("get joint_homed", "YES YES YES")
     talk.say("set mode mdi")
     talk.say("get mode", "MODE MDI")
     talk.say("set mdi g21 g90 g0 x3 y4 z1")

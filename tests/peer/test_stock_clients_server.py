@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.compared import each_time
 from tests.support.nml_server import SOURCE
 from tests.support.stock import DRIVE
 from tests.support.stock_machine import needs_stock_machine, session
@@ -32,6 +33,7 @@ out.append(json.loads(json.dumps({name: getattr(s, name) for name in theirs})))
 """
 
 
+@each_time
 def test_our_module_switches_on_homes_and_moves_a_stock_machine() -> None:
     state, homed, moved, position, jogged, at_rest, failed, message = session(
         OURS
@@ -62,11 +64,12 @@ out.append(do("mdi", "G1 bad")); out.append(e.poll())
     assert message == [11, "(the server did not send the text of this message)"]
 
 
+@each_time
 def test_our_module_runs_a_program_on_a_stock_machine() -> None:
     done, file, position = session(
         OURS
         + """
-open("part.ngc", "w").write("G21 G90 F2000\\nG0 X0 Y0\\nG1 X5\\nG2 X10 Y5 I0 J5\\nM2\\n")
+open("part.ngc", "w").write("G21 G90 F300\\nG0 X0 Y0\\nG1 X5\\nG2 X10 Y5 I0 J5\\nM2\\n")
 ready(); do("mode", linuxcnc.MODE_AUTO); do("program_open", os.path.abspath("part.ngc"))
 c.auto(linuxcnc.AUTO_RUN, 0); until(lambda: s.interp_state != linuxcnc.INTERP_IDLE)
 until(lambda: s.interp_state == linuxcnc.INTERP_IDLE)
@@ -78,12 +81,14 @@ out.append(c.wait_complete(60)); out.append(os.path.basename(s.file)); s.poll();
     assert position == pytest.approx([10.0, 5.0, 0.0])
 
 
+@each_time
 def test_our_module_sees_what_the_stock_module_sees() -> None:
     theirs, ours = session(OURS + "ready(); do('mode', linuxcnc.MODE_MDI); do('mdi', 'G0 X1 Y2')\n" + COMPARE)
     differing = {name: (value, ours[name]) for name, value in theirs.items() if not same(value, ours[name])}
     assert not differing
 
 
+@each_time
 def test_the_diagnostics_report_of_the_stock_server_has_our_layout() -> None:
     (head, entries) = session(
         f"sys.path.insert(0, {str(SOURCE)!r})\n"
@@ -112,6 +117,7 @@ def same(stock: Any, ours: Any) -> bool:
 
 
 @pytest.mark.parametrize("options", ["POLL", "sub=0.05"])
+@each_time
 def test_reads_that_do_not_wait_work_with_the_stock_server(options: str) -> None:
     before, after = session(
         OURS + "until(lambda: s.task_state == 1); out.append(s.task_state); ready(); out.append(s.task_state)", options

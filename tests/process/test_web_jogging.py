@@ -77,7 +77,7 @@ def test_a_jog_runs_at_its_speed_without_stopping_between_increments(page):
         nonlocal stretch
         watch.x()
         stretch = stretch + 1 if abs(watch.status.current_vel) > 0.9 * SPEED else 0
-        return stretch > 40  # of 10 ms or more each, and an increment is extended every 40 ms
+        return stretch > 20  # of 10 ms or more each, and an increment is extended every 40 ms
 
     page.jog_until(ran, SPEED, axis="X")
 
