@@ -296,9 +296,12 @@ class Plan:
         place = None if motion.settled else self.canon.places.find(motion.status.id)
         return place.block if place is not None else self.sequencer.current_block or self._before
 
-    def reset(self) -> None:
-        """Back to the state after the start."""
-        self.interp.reset()
+    def reset(self, startup_code: str) -> None:
+        """Back to the modes after the start, with no program loaded; PyemcError when the code is wrong."""
+        self.close()
+        self.interp.restart()
+        self.startup(startup_code)
+        self._offsets = standing.read_offsets(self.interp)
         self.must_synch = True
 
     def startup(self, code: str) -> None:

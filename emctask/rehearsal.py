@@ -28,10 +28,16 @@ def hand_over(source: WorldModel, target: WorldModel) -> None:
     target.set_g92_offset(*source.in_program_units(coords.g92))
     target.set_xy_rotation(coords.rotation)
     target.use_tool_length_offset(*source.in_program_units(coords.tool))
-    target.set_motion_control_mode(source.motion_mode, source.get_external_motion_control_tolerance())
+    hand_over_path_mode(source, target)
     target.set_naivecam_tolerance(source.get_external_motion_control_naivecam_tolerance())
     target.set_feed_mode(source.feed_spindle, source.feed_mode)
     target.set_feed_rate(source.get_external_feed_rate())
+
+
+def hand_over_path_mode(source: WorldModel, target: WorldModel) -> None:
+    """Give ``target`` the path mode of ``source``, and whether a program chose it."""
+    target.set_motion_control_mode(source.motion_mode, source.get_external_motion_control_tolerance())
+    target.tolerance_set = source.tolerance_set
 
 
 class RehearsalCanon(WorldModel):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from emctask.config import AXES
 from emctask.places import RESTORABLE, Block, Modes
-from emctask.rehearsal import RehearsalCanon, hand_over, spindle_text
+from emctask.rehearsal import RehearsalCanon, hand_over, hand_over_path_mode, spindle_text
 from nml import clock
 from nml.errors import PyemcError
 from rs274ngc.canon import CANON_EXACT_STOP
@@ -234,9 +234,7 @@ class RunFromLine:
             machine.flush()
         else:
             self._rapid(there)  # without a feed the program has only made rapids so far
-        machine.set_motion_control_mode(
-            self.rehearsal.motion_mode, self.rehearsal.get_external_motion_control_tolerance()
-        )
+        hand_over_path_mode(self.rehearsal, machine)
         return [f"to {self._describe_point(there)} over Z{height:.4g} (machine coordinates)"]
 
     def _rapid(self, point: tuple[float, ...]) -> None:

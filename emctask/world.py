@@ -13,9 +13,18 @@ from emctask.config import MachineConfig
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from nml.emc.emcmot import MAX_SPINDLES, Enables
-from rs274ngc.canon import CANON_CLOCKWISE, CANON_COUNTERCLOCKWISE, CANON_STOPPED, CANON_UNITS_INCHES, Tool
+from rs274ngc.canon import (
+    CANON_CLOCKWISE,
+    CANON_CONTINUOUS,
+    CANON_COUNTERCLOCKWISE,
+    CANON_PLANE_XY,
+    CANON_STOPPED,
+    CANON_UNITS_INCHES,
+    Tool,
+)
 from rs274ngc.moves import MoveCanon
 
+NO_OFFSET = (0.0,) * 9
 UNSET_TOLERANCE_MM = 0.0254
 """What LinuxCNC shows as path tolerance until a program sets one; the planner has none then."""
 
@@ -49,6 +58,7 @@ class WorldModel(MoveCanon):
         super().__init__(config.length_units, config.angle_units)
         if math.isclose(config.length_units * 25.4, 1.0, rel_tol=1e-3):
             MoveCanon.use_length_units(self, CANON_UNITS_INCHES)  # a machine in inches starts in G20
+        self._first_units = self.coords.units
         self.is_task = True
         self.config = config
         self.motion = motion
@@ -60,12 +70,24 @@ class WorldModel(MoveCanon):
         self.spindles = [SpindleState() for _ in range(MAX_SPINDLES)]
         self.set_limits(config.max_axis_velocities, config.max_axis_accelerations, config.axis_mask)
 
+    def init_canon(self) -> None:
+        self.use_length_units(self._first_units)
+        self.select_plane(CANON_PLANE_XY)
+        self.use_tool_length_offset(*NO_OFFSET)
+        self.set_motion_control_mode(CANON_CONTINUOUS, 0.0)
+        self.set_naivecam_tolerance(0.0)
+        self.tolerance_set = False
+        self.set_feed_mode(0, 0)
+        self.set_feed_rate(0.0)
+        for spindle in self.spindles:
+            spindle.speed = spindle.css_maximum = 0.0
+
     def set_feed_rate(self, rate: float) -> None:
         self._feed_word = rate, self.coords.length(1.0)
         MoveCanon.set_feed_rate(self, rate)
 
     def set_motion_control_mode(self, mode: int, tolerance: float) -> None:
-        self.tolerance_set = True
+        self.tolerance_set |= mode == CANON_CONTINUOUS
         MoveCanon.set_motion_control_mode(self, mode, tolerance)
 
     def shown_settings(self, settings: tuple[float, ...]) -> tuple[float, ...]:

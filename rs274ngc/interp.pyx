@@ -71,6 +71,24 @@ cdef class Interpreter:
         s.axis_mask = self.canon.get_external_axis_mask()
         if self.parameter_file is not None and os.path.exists(self.parameter_file):
             self.load_parameters(self.parameter_file)
+        self.take_up()
+
+    def restart(self):
+        """As after the start: default modes, and zero in the parameters that no file keeps. Names and retract mode stay."""
+        cdef State s = self.state
+        cdef int number
+        for number in range(1, 5400):
+            if number not in s.persistent:
+                s.params[number] = 0.0
+        s.set_defaults()
+        s.line = 0
+        self.canon.init_canon()
+        s.units = self.canon.get_external_length_unit_type()
+        self.take_up()
+
+    def take_up(self):
+        """Tell the canon origin and offsets, and take the state of the machine."""
+        cdef State s = self.state
         activate_origin(s, self.stored_origin())
         self.restore_g92()
         send_origin(s)

@@ -27,6 +27,7 @@ cdef class State:
     """The interpreter's memory; one per Interpreter."""
 
     def __init__(self, Canon canon, ini=None):
+        cdef int i
         self.canon = canon
         self.ini = ini
         self.globals = {}
@@ -46,6 +47,9 @@ cdef class State:
         self.comp_queue = None
         self.remaps = {}
         self.remap_stack = []
+        self.selected_index = -1
+        for i in range(3):
+            self.indexer[i] = -1
         self.set_defaults()
 
     def set_defaults(self):
@@ -56,17 +60,19 @@ cdef class State:
         self.units = CANON_UNITS_MM
         self.feed_mode = 940
         self.control_mode = CANON_CONTINUOUS
+        self.incremental = self.ijk_absolute = self.diameter_mode = False
         self.comp_side = CANON_SIDE_OFF
-        self.retract_old_z = False
         self.origin_index = 1
+        self.feed = 0.0
+        self.active_spindle = 0
         self.feed_override = self.feed_hold = True
-        self.selected_index = self.last_setting = self.last_change = -1
+        self.last_setting = self.last_change = -1
         self.selected_tool = 0
+        self.in_cycles = self.g43_active = False
         for i in range(SPINDLES):
             self.turning[i] = CANON_STOPPED
+            self.speed[i] = self.css[i] = 0.0
             self.speed_override[i] = True
-        for i in range(3):
-            self.indexer[i] = -1
 
     @property
     def position(self):

@@ -38,6 +38,14 @@ def _must_be_homed(task: Task, what: str) -> None:
         raise Refused(f"Can't {what} when not homed")
 
 
+def _set_optional_stop(task: Task, on: bool) -> None:
+    task.optional_stop = task.canon.optional_stop = on
+
+
+def _set_block_delete(task: Task, on: bool) -> None:
+    task.block_delete = task.canon.block_delete = on
+
+
 @command(EMC_TASK_PLAN_OPEN, idle=True)
 def open_program(task: Task, message: EMC_TASK_PLAN_OPEN) -> None:
     """Load a program."""
@@ -104,13 +112,13 @@ def step(task: Task, message: EMC_TASK_PLAN_STEP) -> None:
 @command(EMC_TASK_PLAN_SET_OPTIONAL_STOP)
 def set_optional_stop(task: Task, message: EMC_TASK_PLAN_SET_OPTIONAL_STOP) -> None:
     """M1 stops, or does not; also for an M1 that was read already."""
-    task.optional_stop = task.canon.optional_stop = bool(message.state)
+    _set_optional_stop(task, bool(message.state))
 
 
 @command(EMC_TASK_PLAN_SET_BLOCK_DELETE)
 def set_block_delete(task: Task, message: EMC_TASK_PLAN_SET_BLOCK_DELETE) -> None:
     """Blocks with a slash are skipped, or not; acts on the blocks that are not read yet."""
-    task.block_delete = task.canon.block_delete = bool(message.state)
+    _set_block_delete(task, bool(message.state))
 
 
 @command(EMC_TASK_PLAN_REVERSE, on=True)
@@ -140,8 +148,13 @@ def synch(task: Task, message: EMC_TASK_PLAN_SYNCH) -> None:
 
 @command(EMC_TASK_PLAN_INIT, idle=True)
 def init(task: Task, message: EMC_TASK_PLAN_INIT) -> None:
-    """The interpreter goes back to its initial state."""
-    task.plan.reset()
+    """The interpreter goes back to its first modes and forgets the program; M1 stops, lines with a slash are skipped."""
+    _set_optional_stop(task, True)
+    _set_block_delete(task, True)
+    try:
+        task.plan.reset(task.config.startup_code)
+    except PyemcError as error:
+        raise Refused(f"[RS274NGC]RS274NGC_STARTUP_CODE: {error}") from None
 
 
 @command(EMC_TASK_PLAN_READ, EMC_TASK_PLAN_END, EMC_TASK_PLAN_OPTIONAL_STOP)
