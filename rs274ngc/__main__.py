@@ -53,12 +53,12 @@ def read_ini(path: str) -> Any:
 
 
 def report(error: InterpError, stack: bool) -> None:
-    """An error on the standard error output: place, message, block."""
-    print(error, file=sys.stderr)
+    """An error on the standard error output: message and block in LinuxCNC's form; before them the place, for people."""
+    if error.place is not None and (stack or sys.stderr.isatty()):
+        print(f"{error.place}:", file=sys.stderr)
+    print(error.message, file=sys.stderr)
     if error.block:
         print(error.block, file=sys.stderr)
-    if stack and error.place is not None:
-        print(f"found at column {error.place.column}", file=sys.stderr)
 
 
 def show_figures(options: argparse.Namespace) -> int:
@@ -136,6 +136,7 @@ def main(arguments: list[str] | None = None) -> int:
             report(error, options.stack)
 
         if options.input:
+            print("executing", file=sys.stderr)
             interp.open(options.input)
             with progress_bar(options.input) if options.output else nullcontext() as progress:
                 interp.run_file(options.next == STOP, on_error, progress)

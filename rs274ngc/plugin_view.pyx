@@ -17,7 +17,7 @@ from rs274ngc.plugin_interpreter import (
 from rs274ngc.plugin_canon import write_out
 from rs274ngc.predefined import PREDEFINED
 from rs274ngc.remapping import remap_level, view
-from rs274ngc.state cimport PARAMETERS, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, Frame, State
+from rs274ngc.state cimport PARAMETERS, SPINDLES, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, Frame, State
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 
@@ -115,13 +115,21 @@ class Spindles:
     def __init__(self, State s):
         self._state = s
 
+    def __len__(self):
+        return SPINDLES
+
     def __getitem__(self, int n):
         cdef State s = self._state
-        return s.speed[n]
+        return s.speed[self._index(n)]
 
     def __setitem__(self, int n, double value):
         cdef State s = self._state
-        s.speed[n] = value
+        s.speed[self._index(n)] = value
+
+    def _index(self, int n):
+        if not 0 <= n < SPINDLES:
+            raise IndexError(f"there is no spindle {n}")
+        return n
 
 
 def axis_value(name, State s):

@@ -1,6 +1,7 @@
 """The interpreter as its drivers see it: places of errors, limits, parameters on disk, MDI, several at once."""
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -152,3 +153,13 @@ def test_the_command_closes_its_output(tmp_path, monkeypatch):
     assert rs274.main(["-g", "part.ngc", "output"]) == 0
     assert os.listdir("/proc/self/fd") == before
     assert "STRAIGHT_TRAVERSE(1.0000" in (tmp_path / "output").read_text()
+
+
+def test_the_command_reports_an_error_as_programs_expect_it_and_its_place_when_asked(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.ngc").write_text("g0 x1\ng1 x1\nm2\n")
+    message = "Cannot do g1 with zero feed rate\ng1 x1\n"
+    assert rs274.main(["-g", "part.ngc"]) == 1
+    assert capfd.readouterr().err == f"executing\n{message}"
+    assert rs274.main(["-g", "-s", "part.ngc"]) == 1
+    assert re.fullmatch(rf"executing\npart\.ngc:2(:\d+)?:\n{message}", capfd.readouterr().err)

@@ -254,6 +254,21 @@ def talk(self):
     assert words == ["before", "one", "two", "three", "four", "five", "after"], done.stdout + done.stderr
 
 
+def test_a_function_sees_the_speed_of_each_spindle_and_none_beyond(machine):
+    interp, canon = machine(
+        oword="""
+        def speeds(self):
+            try:
+                self.speed[len(self.speed)]
+            except IndexError:
+                self.params["_beyond"] = 1
+            return sum(self.speed)
+        """
+    )
+    typed(interp, "s100 m3", "o<speeds> call", "(debug,#<_value> #<_beyond>)")
+    assert messages(canon) == ["100.000000 1.000000"]
+
+
 def test_the_feed_mode_is_one_of_the_interpreter_modules_names(machine):
     interp, canon = machine(
         oword="""
