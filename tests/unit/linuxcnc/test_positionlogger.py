@@ -1,6 +1,8 @@
 """The log of the tool's path."""
 
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 
@@ -20,14 +22,23 @@ def task():
         yield task
 
 
-@pytest.fixture
-def logger(task):
-    logger = linuxcnc.positionlogger(linuxcnc.stat(), *COLOURS, "XYZ")
+@contextmanager
+def running(logger: linuxcnc.positionlogger) -> Iterator[linuxcnc.positionlogger]:
+    """The logger at work; where the machine stands at first is logged already."""
     thread = threading.Thread(target=logger.start, args=(0.001,))
     thread.start()
-    yield logger
-    logger.stop()
-    thread.join()
+    try:
+        wait_until(lambda: logger.npts > 0, "the first point")
+        yield logger
+    finally:
+        logger.stop()
+        thread.join()
+
+
+@pytest.fixture
+def logger(task):
+    with running(linuxcnc.positionlogger(linuxcnc.stat(), *COLOURS, "XYZ")) as logger:
+        yield logger
 
 
 def move(task, logger, position, motion_type=linuxcnc.MOTION_TYPE_FEED, offset=(0.0,) * 9, straight=False):
@@ -61,9 +72,8 @@ def test_the_geometry_makes_the_picture(task, geometry, is_xyuv, point):
     logger.set_depth(0.5, 2.5)
     task.status.motion.traj.position = tuple(map(float, range(1, 10)))
     task.publish()
-    threading.Timer(0.1, logger.stop).start()
-    logger.start(0.01)
-    assert logger.last(0) == point
+    with running(logger):
+        assert logger.last(0) == point
 
 
 def test_the_inner_points_of_a_straight_are_left_out_and_corners_kept(task, logger):
@@ -95,12 +105,9 @@ def test_standing_still_adds_no_points(task, logger):
 
 def test_cleared_points_are_gone(task):
     logger = linuxcnc.positionlogger(linuxcnc.stat(), *COLOURS, "XYZ")
-    thread = threading.Thread(target=logger.start, args=(0.001,))
-    thread.start()
-    move(task, logger, (1.0,))
-    logger.stop()
-    thread.join()
-    assert logger.npts > 0
+    with running(logger):
+        move(task, logger, (1.0,))
+    assert logger.npts > 1
     logger.clear()
     assert (logger.npts, logger.last()) == (0, None)
 
