@@ -6,6 +6,7 @@ from emcmot.tp.model cimport Segment, TpState
 
 cdef void extend(TpState* tp) noexcept nogil
 cdef void refresh(TpState* tp) noexcept nogil
+cdef int body_left(const TpState* tp) noexcept nogil
 cdef void sweep_caps(TpState* tp) noexcept nogil
 cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil
 cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil

@@ -127,6 +127,11 @@ cdef void sweep_caps(TpState* tp) noexcept nogil:
 
 # --- building ---------------------------------------------------------------------------------------------------------
 
+cdef int body_left(const TpState* tp) noexcept nogil:
+    """Whether spans are missing of the last segment that has been begun."""
+    return tp.seg_built > tp.seg_head and tp.body_end < tp.body_goal - NO_WAY * _seg(tp, tp.seg_built - 1).length
+
+
 cdef void extend(TpState* tp) noexcept nogil:
     """Build spans of queued moves, as far as the ring of spans and this period's share of work allow.
 
@@ -146,7 +151,7 @@ cdef void extend(TpState* tp) noexcept nogil:
             steps += take_segment(tp, urgent) // RAWS_PER_STEP
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
             _plan_corner(tp, last)
-        elif last >= tp.seg_head and tp.body_end < tp.body_goal - NO_WAY * _seg(tp, last).length:
+        elif body_left(tp):
             if not tp.corner_known and not urgent:
                 return
             _add_body(tp, last)
@@ -219,7 +224,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
         return
     _cut_body(tp, last, tp.body_goal)
     _start_segment(tp, last + 1)
-    if tp.body_end < tp.body_goal - NO_WAY * b.length:
+    if body_left(tp):
         _add_body(tp, last + 1)
     refresh(tp)
     if _active_fits(tp):
@@ -232,7 +237,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
     tp.seg_built = last + 1
     span = _span(tp, tp.span_tail - 1)
     tp.body_end = a.trim_start if span.kind == SPAN_BLEND else span.u0 + span.h
-    while tp.body_end < tp.body_goal - NO_WAY * a.length:
+    while body_left(tp):
         _add_body(tp, last)
     refresh(tp)
 
@@ -299,7 +304,7 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     """Spans of the segment itself, from body_end on; long arcs come in several steps."""
     cdef Segment* seg = _seg(tp, index)
     cdef Span* span
-    cdef double way = tp.body_goal - tp.body_end, h = way
+    cdef double way = tp.body_goal - tp.body_end, h = way, pieces
     cdef int kind = SPAN_LINE, count, k
     if seg.kind == TP_ARC or tp.inverse != NULL:
         kind = SPAN_CURVE
@@ -308,14 +313,15 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
         h = fmin(h, ARC_SPAN_ANGLE / fabs(seg.omega))
     if tp.inverse != NULL:
         h = _joint_way(tp, seg, index, h)
-    count = <int>fmin(ceil(way / h), SPANS_PER_STEP)
-    h = way / fmax(ceil(way / h), 1.0)
+    pieces = fmax(ceil(way / h), 1.0)
+    count = <int>fmin(pieces, SPANS_PER_STEP)
+    h = way / pieces
     for k in range(count):
         span = _new_span(tp, kind, index, tp.body_end + k * h, h)
         if kind == SPAN_LINE and _between_stops(tp, index):
             span.along = 1.0
         _limit_body(tp, seg, span)
-    tp.body_end += count * h
+    tp.body_end = tp.body_goal if count >= pieces else tp.body_end + count * h
 
 
 cdef int _between_stops(const TpState* tp, int64_t index) noexcept nogil:

@@ -9,7 +9,7 @@ from libc.string cimport memcpy
 
 from emcmot.tp.follow cimport follows_position, follows_velocity, spindle_speed, waits_for_index
 from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, Segment, Span, TpState
-from emcmot.tp.path cimport feed_cap, feed_scale
+from emcmot.tp.path cimport body_left, feed_cap, feed_scale
 from emcmot.tp.tap cimport tap
 from emcmot.tp.tp cimport TP_FH_ENABLED
 
@@ -107,7 +107,7 @@ cdef int next_span(TpState* tp, Span* span) noexcept nogil:
     tp.w = 0.0 if span.stop else tp.w * span.ratio * span.ratio
     if tp.reversing and tp.active + 1 >= tp.span_tail:
         return 0
-    if tp.active + 1 >= tp.span_tail and (tp.body_end < tp.body_goal or tp.raw_next < tp.raw_tail or tp.seg_built < tp.seg_tail):
+    if tp.active + 1 >= tp.span_tail and (body_left(tp) or tp.raw_next < tp.raw_tail or tp.seg_built < tp.seg_tail):
         tp.w = 0.0                                   # at the end of what is built so far, but not of the queue
         return 0
     tp.active += 1

@@ -14,11 +14,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 ARC_SAMPLES = 2001
-WINDOW = 48  # primitives on either side of the last match that are tried before all others
 POSITION_WINDOW = 500  # positions after the last match that are tried first, then twice as many, and so on
 CHORD = 4e-3  # lu by which a polyline of positions may cut a curve
-LOST = 10.0  # tolerances beyond which the window holds no match
-LOST_WAY = 1e-3  # lu, the same where there is no tolerance
+SURE = 1e-9  # lu beyond the tolerance, at which a position is taken for found
 
 
 @dataclass
@@ -114,20 +112,18 @@ def differences(positions: Array, start: Array, dt: float) -> tuple[Array, Array
 def path_deviation(positions: Array, path: list[Line | Arc], tolerance: float) -> float:
     """Largest distance of the positions, in their order, from the path.
 
-    Paths cross themselves, so a position is looked for near where the one before was found, ahead and behind (a path
-    may be run back), and only if it is nowhere near there in all the rest of the path.
+    Paths cross themselves, so a position is looked for from where the one before was found, ahead and behind (a path
+    may be run back), and further away only while it is nowhere within the tolerance.
     """
     worst, at = 0.0, 0
     for q in positions:
         best, best_index = math.inf, at
         for away in range(len(path)):
-            if away >= WINDOW and best <= LOST * tolerance + LOST_WAY:
-                break
             for index in {at + away, at - away}:
                 d = path[index].distance(q) if 0 <= index < len(path) else math.inf
                 if d < best:
                     best, best_index = d, index
-            if best <= tolerance:
+            if best <= tolerance + SURE:
                 break
         at = best_index
         worst = max(worst, best)

@@ -315,3 +315,11 @@ def test_slow_moves_of_any_length_reach_their_end():
         planner.add_line((length,), 10 ** random.uniform(-0.7, 1))
         planner.run_to_end(20.0)
         assert planner.status()["done"], length
+
+
+@pytest.mark.parametrize("radius", [0.11, 0.49, 0.94, 1.07, 2.38, 3.94])
+def test_a_program_that_ends_with_an_arc_comes_to_its_end(radius):
+    program = Program(tolerance=0.02).line(3, 0, 0).arc((3 + radius, radius, 0), (3, radius, 0))
+    positions = program.planner.run_to_end(10.0)
+    assert program.planner.status()["done"]
+    program.check(positions, 0.02)
