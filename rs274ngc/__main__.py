@@ -53,7 +53,7 @@ def read_ini(path: str) -> Any:
 
 
 def report(error: InterpError, stack: bool) -> None:
-    """An error on the standard error output: message and block in LinuxCNC's form; before them the place, for people."""
+    """An error on the standard error output: message and block in LinuxCNC's form, the place first for people."""
     if error.place is not None and (stack or sys.stderr.isatty()):
         print(f"{error.place}:", file=sys.stderr)
     print(error.message, file=sys.stderr)
