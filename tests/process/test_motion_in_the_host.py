@@ -16,6 +16,7 @@ from tests.support.motion_host import MotionHost
 pytestmark = pytest.mark.process
 
 MISSED_POLLS = 2000  # servo periods in which a busy computer may keep the test from looking
+SILENCE = 0.5  # s without a sign of life; a busy computer may hold up a healthy pulse for longer than 0.1 s
 
 
 MACHINE = """\
@@ -83,21 +84,21 @@ def test_without_a_heartbeat_motion_stops_and_switches_off(machine: MotionHost) 
     assert status.joint_status[0].vel_cmd == 0.0
 
 
-def test_motion_misses_the_pulse_of_task_after_a_tenth_of_a_second(machine: MotionHost) -> None:
+def test_motion_misses_the_pulse_of_task_after_the_time_it_was_told(machine: MotionHost) -> None:
     machine.send(C.ENABLE)
     machine.wait(lambda s: s.motion_state == 1, "enabled")
     pulse = Pulse(machine.command, 0.02, 60.0)
-    machine.send(C.SET_HEARTBEAT_TIMEOUT, timeout=0.1)
+    machine.send(C.SET_HEARTBEAT_TIMEOUT, timeout=SILENCE)
     machine.send(C.JOG_CONT, joint=0, mode=1, vel=20.0)
     start = machine.wait(lambda s: s.joint_status[0].vel_cmd > 19.9, "at speed").heartbeat
-    machine.wait(lambda s: s.heartbeat > start + 500 and s.joint_status[0].vel_cmd > 19.9, "half a second more")
+    machine.wait(lambda s: s.heartbeat > start + 1500 and s.joint_status[0].vel_cmd > 19.9, "much longer")
     pulse.close()
     end = machine.wait(lambda s: s.joint_status[0].vel_cmd > 19.9, "the last sign of life").heartbeat
     status = machine.wait(lambda s: s.task_lost, "task missed")
-    assert 0 < status.heartbeat - end < 100 + MISSED_POLLS
+    assert 0 < status.heartbeat - end < SILENCE * 1000 + MISSED_POLLS
     status = machine.wait(lambda s: s.motion_state == 0, "switched off")
     assert status.joint_status[0].vel_cmd == 0.0
-    assert machine.errors() == ["Task has not answered for 0.100 s: motion stopped"]
+    assert machine.errors() == ["Task has not answered for 0.500 s: motion stopped"]
 
 
 TABLE = """\
