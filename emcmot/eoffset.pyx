@@ -6,17 +6,13 @@ INI's OFFSET_AV_RATIO leaves to it; task has lowered the planner's limits by the
 and coordinated mode of a homed machine, and come to rest before the mode changes or the machine is off.
 """
 
-from libc.math cimport fabs
-
-from emcmot._messages cimport MAX_AXES, MotionState_FREE
+from emcmot._messages cimport MAX_AXES
 from emcmot.free_planner cimport free_planner_rest_at, free_planner_step
 from emcmot.state cimport Axis, Motion
 
 from emcmot.layout import same_size
 
 same_size(__name__, "Motion", sizeof(Motion))
-
-cdef double ACTIVE = 1e-6  # lu or deg: a smaller offset is none
 
 
 cdef void follow(Motion* m, Axis* axis, int allowed) noexcept nogil:
@@ -41,30 +37,6 @@ cdef void follow(Motion* m, Axis* axis, int allowed) noexcept nogil:
     axis.eoffset.jerk_limit = axis.eoffset_jerk_limit
     axis.eoffset.enabled = allowed
     free_planner_step(&axis.eoffset, m.dt)
-
-
-cdef void eoffset_cycle(Motion* m) noexcept nogil:
-    cdef int n
-    cdef int allowed = m.enabled and m.all_homed and m.mode != MotionState_FREE and m.mode == m.mode_wanted
-    cdef Axis* axis
-    m.eoffset_limited = 0
-    m.eoffset_active = 0
-    for n in range(MAX_AXES):
-        axis = &m.axis[n]
-        if axis.eoffset_vel_limit <= 0.0 or axis.eoffset_acc_limit <= 0.0:
-            continue
-        follow(m, axis, allowed)
-        m.eoffset[n] = axis.eoffset.pos
-        if fabs(axis.eoffset.pos) > ACTIVE:
-            m.eoffset_active = 1
-
-
-cdef int eoffsets_still(Motion* m) noexcept nogil:
-    cdef int n
-    for n in range(MAX_AXES):
-        if m.axis[n].eoffset.vel != 0.0:
-            return 0
-    return 1
 
 
 cdef void forget_eoffsets(Motion* m) noexcept nogil:

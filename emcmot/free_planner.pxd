@@ -5,7 +5,7 @@ is exact in discrete time: with target and limits constant it lands on the targe
 changes by more than acc_limit * dt. With a jerk limit it is the S-curve of ``scurve``. In lu or degrees and seconds.
 """
 
-from libc.math cimport floor, sqrt
+from libc.math cimport fabs, floor, sqrt
 
 from emcmot.scurve cimport SCurve
 
@@ -41,7 +41,43 @@ cdef inline double fastest_stoppable(double distance, double acc, double dt) noe
     return (k + (d - 0.5 * k * (k + 1.0)) / (k + 1.0)) * acc * dt
 
 
-cdef void free_planner_step(FreePlanner* p, double dt) noexcept nogil          # advance by one period
+cdef void scurve_step(FreePlanner* p, double dt) noexcept nogil
 cdef void free_planner_rest_at(FreePlanner* p, double pos) noexcept nogil      # stand still there
 cdef double free_planner_stop_point(const FreePlanner* p, double dt) noexcept nogil  # where it rests when stopped now
 cdef double free_planner_stopping_way(const FreePlanner* p) noexcept nogil     # from its greatest speed
+
+
+cdef inline void trapezoid_step(FreePlanner* p, double dt) noexcept nogil:
+    cdef double wanted = 0.0
+    cdef double before = p.vel
+    cdef double gap = p.target - p.pos
+    cdef double step = p.acc_limit * dt
+    cdef double limit = p.vel_limit
+    cdef double rounding = 1e-12  # of 1 + |target|, on the way to it
+    if p.enabled and gap != 0.0:
+        wanted = fastest_stoppable(fabs(gap), p.acc_limit, dt)
+        if wanted > limit:
+            wanted = limit
+        if gap < 0.0:
+            wanted = -wanted
+    if wanted > p.vel + step:
+        p.vel += step
+    elif wanted < p.vel - step:
+        p.vel -= step
+    else:
+        p.vel = wanted
+    if p.enabled and fabs(gap - p.vel * dt) <= rounding * (1.0 + fabs(p.target)) and fabs(p.vel) <= step:
+        p.pos = p.target
+    else:
+        p.pos += p.vel * dt
+    p.acc = (p.vel - before) / dt
+    p.active = p.vel != 0.0 or (p.enabled and p.pos != p.target)
+
+
+cdef inline void free_planner_step(FreePlanner* p, double dt) noexcept nogil:
+    """Advance by one period."""
+    if p.jerk_limit > 0.0 and p.acc_limit > 0.0:
+        scurve_step(p, dt)
+    else:
+        p.planned.jerk_limit = 0.0
+        trapezoid_step(p, dt)

@@ -4,34 +4,6 @@ from libc.math cimport fabs
 
 from emcmot.scurve cimport SCurveLimits, SCurveState, scurve_advance, scurve_stop, scurve_stop_point, scurve_to
 
-cdef double LANDED = 1e-12   # of 1 + |target|: rounding on the way to it
-
-
-cdef void trapezoid_step(FreePlanner* p, double dt) noexcept nogil:
-    cdef double wanted = 0.0
-    cdef double before = p.vel
-    cdef double gap = p.target - p.pos
-    cdef double step = p.acc_limit * dt
-    cdef double limit = p.vel_limit
-    if p.enabled and gap != 0.0:
-        wanted = fastest_stoppable(fabs(gap), p.acc_limit, dt)
-        if wanted > limit:
-            wanted = limit
-        if gap < 0.0:
-            wanted = -wanted
-    if wanted > p.vel + step:
-        p.vel += step
-    elif wanted < p.vel - step:
-        p.vel -= step
-    else:
-        p.vel = wanted
-    if p.enabled and fabs(gap - p.vel * dt) <= LANDED * (1.0 + fabs(p.target)) and fabs(p.vel) <= step:
-        p.pos = p.target
-    else:
-        p.pos += p.vel * dt
-    p.acc = (p.vel - before) / dt
-    p.active = p.vel != 0.0 or (p.enabled and p.pos != p.target)
-
 
 cdef inline SCurveState state_of(const FreePlanner* p) noexcept nogil:
     return SCurveState(p.pos, p.vel, p.acc)
@@ -71,14 +43,6 @@ cdef void scurve_step(FreePlanner* p, double dt) noexcept nogil:
         if p.enabled and p.vel_limit > 0.0:
             p.pos = p.target
     p.active = p.curve.phases > 0 or (p.enabled and p.pos != p.target)
-
-
-cdef void free_planner_step(FreePlanner* p, double dt) noexcept nogil:
-    if p.jerk_limit > 0.0 and p.acc_limit > 0.0:
-        scurve_step(p, dt)
-    else:
-        p.planned.jerk_limit = 0.0
-        trapezoid_step(p, dt)
 
 
 cdef void free_planner_rest_at(FreePlanner* p, double pos) noexcept nogil:

@@ -8,7 +8,7 @@ that every jog slows down in time. The command handler has checked mode and enab
 from libc.math cimport fabs
 from libc.stdio cimport snprintf
 
-from emcmot._messages cimport Enables_FS, MAX_AXES, MotionState_FREE, MotionState_TELEOP
+from emcmot._messages cimport MAX_AXES, MotionState_FREE, MotionState_TELEOP
 from emcmot.free_planner cimport FreePlanner, free_planner_stop_point, free_planner_stopping_way
 from emcmot.joint cimport jog_bounds, limit_own_moves
 from emcmot.report cimport TEXT_SIZE, report
@@ -223,7 +223,7 @@ cdef void joint_wheel(Motion* m, Joint* joint, int number, int homing) noexcept 
     cdef double low, high
     cdef int counts = joint.jog_counts - joint.wheel_counts
     joint.wheel_counts = joint.jog_counts
-    if counts == 0 or not joint.jog_enable or m.mode != MotionState_FREE or homing:
+    if not joint.jog_enable or m.mode != MotionState_FREE or homing:
         return
     if not m.enabled or m.jog_inhibit or m.jog_stop or joint.kb_jog or not joint.active:
         return
@@ -245,8 +245,7 @@ cdef void joint_wheel(Motion* m, Joint* joint, int number, int homing) noexcept 
 cdef void axis_wheel(Motion* m, Axis* axis, int number) noexcept nogil:
     cdef int counts = axis.jog_counts - axis.wheel_counts
     axis.wheel_counts = axis.jog_counts
-    axis.wheel_refused &= axis.jog_enable
-    if counts == 0 or not axis.jog_enable or m.mode != MotionState_TELEOP or not m.enabled:
+    if not axis.jog_enable or m.mode != MotionState_TELEOP or not m.enabled:
         return
     if m.jog_inhibit or m.jog_stop or axis.kb_jog or axis.vel_net <= 0.0 or axis.wheel_refused:
         return
@@ -258,49 +257,3 @@ cdef void axis_wheel(Motion* m, Axis* axis, int number) noexcept nogil:
     limit_axis_moves(axis, fraction(axis.jog_accel_fraction))
     turn(&axis.teleop, counts * axis.jog_scale, axis.jog_vel_mode, axis.min_limit, axis.max_limit, m.dt)
     axis.wheel_jog = 1
-
-
-cdef void jog_cycle(Motion* m) noexcept nogil:
-    """Before the planners' step: stop pins, wheels, and speeds under the feed override."""
-    cdef int n
-    cdef int homing = 0
-    cdef double scale = min(m.feed_scale, m.max_feed_scale) if m.enables & Enables_FS else 1.0
-    cdef Joint* joint
-    cdef Axis* axis
-    if m.jog_active and (m.jog_stop or m.jog_stop_immediate):
-        stop_jogs(m)
-    for n in range(m.num_joints):
-        homing |= m.joint[n].home.homing
-    for n in range(m.num_joints):
-        joint = &m.joint[n]
-        joint_wheel(m, joint, n, homing)
-        if not joint.home.homing and m.mode == MotionState_FREE:
-            joint.free.vel_limit = min(joint.jog_vel, joint.vel_limit * scale)
-    for n in range(MAX_AXES):
-        axis = &m.axis[n]
-        axis_wheel(m, axis, n)
-        axis.teleop.vel_limit = min(axis.jog_vel, axis.vel_net * scale)
-
-
-cdef void end_jogs(Motion* m) noexcept nogil:
-    """After the planners' step: which jogs have ended, and with them the override of limits."""
-    cdef int n
-    cdef Joint* joint
-    cdef Axis* axis
-    m.jog_active = 0
-    for n in range(m.num_joints):
-        joint = &m.joint[n]
-        if not joint.free.active:
-            joint.kb_jog = 0
-            joint.wheel_jog = 0
-        m.jog_active |= joint.kb_jog or joint.wheel_jog
-    for n in range(MAX_AXES):
-        axis = &m.axis[n]
-        if not axis.teleop.active:
-            axis.teleop.target = axis.teleop.pos
-            axis.kb_jog = 0
-            axis.wheel_jog = 0
-        m.jog_active |= axis.kb_jog or axis.wheel_jog
-    if m.overriding_jog and not m.jog_active and m.at_rest:
-        m.override_limits = 0
-        m.overriding_jog = 0

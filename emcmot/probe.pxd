@@ -11,4 +11,15 @@ cdef enum ProbeType:     # bits of EMCMOT_COMMAND.probe_type
     PROBE_NO_ERROR = 1   # G38.3, G38.5: finding nothing is no error
     PROBE_AWAY = 2       # G38.4, G38.5: contact is to be lost
 
-cdef void probe_cycle(Motion* m) noexcept nogil
+
+cdef void look(Motion* m) noexcept nogil
+cdef void alarm(Motion* m) noexcept nogil
+
+
+cdef inline void probe_cycle(Motion* m) noexcept nogil:
+    cdef int rising = m.probe_input and not m.probe_last
+    m.probe_last = m.probe_input
+    if m.probing != PROBE_OFF:
+        look(m)
+    elif rising:
+        alarm(m)

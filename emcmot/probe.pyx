@@ -81,12 +81,3 @@ cdef void alarm(Motion* m) noexcept nogil:
         stop_jogs(m)
         m.stopping = 1
         snprintf(report(m), TEXT_SIZE, b"Probe tripped during a jog.")
-
-
-cdef void probe_cycle(Motion* m) noexcept nogil:
-    cdef int rising = m.probe_input and not m.probe_last
-    m.probe_last = m.probe_input
-    if m.probing != PROBE_OFF:
-        look(m)
-    elif rising:
-        alarm(m)
