@@ -134,21 +134,24 @@ def reasons_of_lines(
 ) -> dict[int, str]:
     """For each line that lost time, what cost its slowest move most."""
     order = np.argsort(lost)
-    return {int(lines[k]): names[reasons[k]] for k in order if lost[k] > 0.0}
+    order = order[lost[order] > 0.0]
+    return dict(zip(lines[order].tolist(), [names[reason] for reason in reasons[order].tolist()], strict=True))
 
 
 def run_of(lines: NDArray[np.int64], times: NDArray[np.float64]) -> list[tuple[int, float]]:
     """Lines in the order of their moves, neighbours of one line as one, with the time of motion at the end of each."""
     ends = np.cumsum(times)
     last = np.flatnonzero(np.append(np.diff(lines) != 0, len(lines) > 0))
-    return [(int(lines[k]), round(float(ends[k]), 4)) for k in last if lines[k]]
+    last = last[lines[last] != 0]
+    return list(zip(lines[last].tolist(), ends[last].round(4).tolist(), strict=True))
 
 
 def by_line(lines: NDArray[np.int64], seconds: NDArray[np.float64]) -> dict[int, float]:
     """Sums of the moves of each program line, the largest first."""
     sums = np.bincount(lines, weights=seconds) if len(lines) else np.zeros(0)
     order = np.argsort(-sums)
-    return {int(k): float(sums[k]) for k in order if sums[k] > 0.0}
+    order = order[sums[order] > 0.0]
+    return dict(zip(order.tolist(), sums[order].tolist(), strict=True))
 
 
 def clock_text(seconds: float) -> str:
