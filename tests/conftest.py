@@ -1,4 +1,7 @@
-"""Every test lives in a namespace of its own, and leaves nothing behind in it."""
+"""Every test lives in a namespace of its own, and leaves nothing behind in it.
+
+Property tests try the same examples in every run, however long a busy computer takes for one.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from nml import namespace
+
+settings.register_profile("steady", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("steady")
 
 
 @pytest.fixture(autouse=True)

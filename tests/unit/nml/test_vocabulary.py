@@ -10,7 +10,7 @@ import pytest
 
 import nml.emc
 import nml.emc.emcmot
-from nml import cheader
+from nml import cheader, message
 from nml.codecs import xdr
 from nml.emc.constants import EMC_TASK_MODE_ENUM
 from nml.fields import Field
@@ -61,7 +61,9 @@ def test_task_has_a_state_of_its_own_beside_that_of_the_preamble():
     assert (status.state, preamble.plain(status)) == (4, 0)
 
 
-def test_a_new_message_is_one_class():
+def test_a_new_message_is_one_class(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(message, "registry", dict(message.registry))  # other tests look at the vocabulary as it is
+
     class EMC_IO_GENERIC(nml.emc.EMC_IO_CMD_MSG, type_id=1605):
         """The manual's example."""
 
