@@ -40,7 +40,7 @@ def test_when_a_process_dies_the_machine_stops_under_its_limits(tmp_path, victim
         pid = run.process.pid if victim == "launcher" else run.pids()[victim]
         before = len(recorded(data))
         os.kill(pid, signal.SIGKILL)
-        wait_until(lambda: not processes(), "the end of all processes", 15.0)
+        wait_until(lambda: not processes(), "the end of all processes")
         code = run.finish()
     samples = recorded(data)
     assert len(samples) > before
@@ -114,7 +114,7 @@ def test_a_guard_that_dies_is_replaced(tmp_path):
         os.kill(guard, signal.SIGKILL)
         wait_until(lambda: len(guards() - {guard}) == 1, "a new guard")
         run.process.kill()
-        wait_until(lambda: not processes(), "the end of all processes", 15.0)
+        wait_until(lambda: not processes(), "the end of all processes")
     assert traces() == []
 
 
