@@ -386,7 +386,9 @@ def debug(session: Session, args: list[str]) -> None:
 
 @command("setexact_for_test_suite_only", usage="setexact_for_test_suite_only")
 def setexact(session: Session, args: list[str]) -> None:
-    """Make thread periods exact. They always are here."""
+    """Make thread periods exact, before there are threads. They always are here."""
+    if session.hal.segment.threads():
+        raise HalError("setexact: a thread exists already; this command belongs before 'loadrt threads'")
 
 
 @command("quit", "exit", usage="quit")
@@ -401,6 +403,7 @@ def quit_(session: Session, args: list[str]) -> None:
 def help_(session: Session, args: list[str]) -> None:
     """Explain a command, or list them all."""
     if args and args[0] not in TABLE:
-        raise HalError(f"Unknown command '{args[0]}'")
+        print(f"No help for unknown command '{args[0]}'")
+        return
     for name, entry in sorted(TABLE.items()) if not args else [(args[0], TABLE[args[0]])]:
         print(f"{entry.usage}\n  {entry.help}" if args else f"  {name:<12} {entry.help.splitlines()[0]}")

@@ -92,12 +92,15 @@ def wait_gone(hal: Hal, name: str) -> None:
 
 
 def unload(hal: Hal, name: str) -> None:
-    """``unloadusr``: SIGTERM to the component's process (``all``: to each but this one), then SIGKILL."""
+    """``unloadusr``: SIGTERM to the component's process (``all``: to each but this one), then SIGKILL.
+
+    One that has left already is no error: programs end by themselves.
+    """
     if name == "all":
         comps = [c for c in hal.segment.comps() if c.kind == USER and c.pid != os.getpid()]
     else:
-        comps = [hal.component(name)]
-        if comps[0].kind != USER:
+        comps = [c for c in [hal.segment.find_comp(name)] if c]
+        if comps and comps[0].kind != USER:
             raise HalError(f"component '{name}' is a realtime one; 'unloadrt {name}' would be right")
     for signal_number in (signal.SIGTERM, signal.SIGKILL):
         living = [c for c in comps if c.exists and alive(c.pid, c.start)]

@@ -254,10 +254,9 @@ class Save:
             if not arrows:
                 yield " ".join(["net", signal.name, *(pin.shown for pin in pins)])
                 continue
-            words = ["net", signal.name, *(pin.shown for pin in pins if pin.dir == OUT)]
-            both = [pin.shown for pin in pins if pin.dir not in (IN, OUT)]
-            readers = [pin.shown for pin in pins if pin.dir == IN]
-            yield " ".join(words + (["<=>", *both] if both else []) + (["=>", *readers] if readers else []))
+            sources = [pin.shown for pin in pins if pin.dir != IN]  # one output, or inputs that are outputs too
+            readers = " ".join(pin.shown for pin in pins if pin.dir == IN)
+            yield f"net {signal.name} " + " => ".join(part for part in (" <=> ".join(sources), readers) if part)
 
     def _linked(self) -> list[Signal]:
         return [signal for signal in self.segment.signals() if signal.pins()]

@@ -92,6 +92,13 @@ getp and2.0.in0
 ptype and2.0.tmax
 stype foo
 list pin and2.0
+loadrt encoder num_chan=4
+loadrt not count=3
+net read not.0.in not.1.in
+net index encoder.0.index-enable encoder.1.index-enable encoder.2.index-enable
+net mixed encoder.3.index-enable not.2.in
+help nosuch
+unloadusr nosuch
 addf and2.0 slow
 alias pin and2.0.in0 hello
 show alias

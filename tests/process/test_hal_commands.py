@@ -34,6 +34,12 @@ def test_a_failed_command_ends_with_code_1_and_its_place(own_namespace: str, tmp
     assert done.stderr.startswith(f"{tmp_path}/test.hal:2: Unknown signal type 'nonsense'")
 
 
+def test_commands_about_what_is_not_there_end_as_scripts_expect(session: None) -> None:
+    assert (run("halcmd", "unloadusr", "gone").returncode, run("halcmd", "unload", "gone").returncode) == (0, 1)
+    assert run("halcmd", "help", "nosuch").stdout == "No help for unknown command 'nosuch'\n"
+    assert "belongs before 'loadrt threads'" in run("halcmd", "setexact_for_test_suite_only").stderr
+
+
 def test_k_keeps_going_and_q_is_silent(own_namespace: str, tmp_path: Path) -> None:
     done = script(tmp_path, "bogus\nnewsig a bit\ngets a\n", "-k")
     assert (done.returncode, done.stdout) == (1, "FALSE\n")
