@@ -1,6 +1,6 @@
 """LinuxCNC's preview module: run a program and hear of its moves; lengths in inches.
 
-    result, line = gcode.parse(filename, canon, "G20", "G40 G49", "")
+    result, line = gcode.parse(filename, canon, ["G20", "G40 G49"])
     if result > gcode.MIN_ERROR:
         print(f"{filename}:{line}: {gcode.strerror(result)}")
 
@@ -30,16 +30,16 @@ linecode = LineCode
 _last_error = ""
 
 
-def parse(
-    filename: str, canon: Any, unitcode: str = "", initcode: str = "", interpname: str = ""
-) -> tuple[int, int]:
+def parse(filename: str, canon: Any, *codes: str | list[str]) -> tuple[int, int]:
     """Run a program: (result, number of the last line); results above MIN_ERROR are errors, see ``strerror``.
 
-    ``unitcode`` and ``initcode`` are lines that are run before it. ``canon.check_abort()`` is asked at every line; when
-    it says yes, KeyboardInterrupt is raised. ``interpname`` names LinuxCNC's other interpreters; there is only one.
+    ``codes``: a list of lines that are run before it, or one or two such lines; a last text names one of LinuxCNC's
+    other interpreters, of which there is none. ``canon.check_abort()`` is asked at every line; when it says yes,
+    KeyboardInterrupt is raised.
     """
     global _last_error
     _last_error = ""
+    lines = _lines_before(codes)
     machine = CallbackCanon(canon)
     path = os.environ.get("INI_FILE_NAME")
     try:
@@ -47,9 +47,13 @@ def parse(
         machine.interp = interp
         interp.parameter_file = getattr(canon, "parameter_file", None) or None
         interp.init()
-        for text in (unitcode, initcode):
-            if text:
-                interp.execute_mdi(text)
+        try:
+            for line in lines:
+                if interp.execute_mdi(line) == INTERP_EXIT:
+                    return INTERP_EXIT, 0
+        except InterpError as error:
+            _last_error = error.message
+            return INTERP_ERROR, 0
         interp.open(filename)
         return _run(interp, machine)
     except InterpError as error:
@@ -58,6 +62,18 @@ def parse(
     except ConfigError as error:
         _last_error = str(error)
         return INTERP_ERROR, 0
+
+
+def _lines_before(codes: tuple[str | list[str], ...]) -> list[str]:
+    """The lines to run before the program. TypeError as LinuxCNC's module."""
+    given: list[Any] = list(codes)
+    lines = given[:2]
+    if given and isinstance(given[0], list) and len(given) < 3:
+        lines = given.pop(0)
+    for number, value in enumerate([*given, *lines], 3):
+        if not isinstance(value, str):
+            raise TypeError(f"parse() argument {number} must be str, not {type(value).__name__}")
+    return [line for line in lines if line]
 
 
 def _run(interp: Interpreter, machine: CallbackCanon) -> tuple[int, int]:

@@ -13,7 +13,7 @@ from Cython.Build import cythonize
 from setuptools import Extension, setup
 
 ROOT = Path(__file__).parent
-PACKAGES = ("nml", "hal", "rs274ngc", "emcmot")
+PACKAGES = ("nml", "hal", "rs274ngc", "emcmot", "linuxcnc")
 DEBUG = os.environ.get("PYEMC_DEBUG") == "1"
 DIRECTIVES = {
     "language_level": "3",

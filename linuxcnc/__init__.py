@@ -7,6 +7,7 @@ The classes talk to task through the NML buffers emcStatus, emcCommand and emcEr
 from linuxcnc._command import command
 from linuxcnc._connection import error
 from linuxcnc._constants import *  # noqa: F403  every constant is public here
+from linuxcnc._drawing import draw_dwells, draw_lines, gui_respect_offsets, gui_rot_offsets, line9, vertex9
 from linuxcnc._error import error_channel
 from linuxcnc._ini import ini
 from linuxcnc._orders import order, order_channel
@@ -15,5 +16,19 @@ from linuxcnc._stat import stat
 from linuxcnc._stat import tool_result as tool
 
 __all__ = [
-    "command", "error", "error_channel", "ini", "order", "order_channel", "positionlogger", "stat", "tool",
+    "command",
+    "draw_dwells",
+    "draw_lines",
+    "error",
+    "error_channel",
+    "gui_respect_offsets",
+    "gui_rot_offsets",
+    "ini",
+    "line9",
+    "order",
+    "order_channel",
+    "positionlogger",
+    "stat",
+    "tool",
+    "vertex9",
 ]

@@ -1,6 +1,6 @@
 """``linuxcnc.positionlogger``: the path that the tool has taken, point by point, for screens that draw it.
 
-Under LinuxCNC it also draws, with OpenGL; here a screen takes ``points`` and draws them by its own means.
+``call`` draws it with OpenGL (``_drawing``), as AXIS wants it; other screens take ``points``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ import threading
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from linuxcnc._connection import error
+import numpy as np
+
+from linuxcnc._drawing import draw_track
 
 if TYPE_CHECKING:
     from linuxcnc._stat import stat
@@ -21,6 +23,9 @@ MOST_POINTS = 100_000  # the older half goes when there are more
 FOAM_DEPTHS = (0.0, 1.5)  # Z and W of a foam cutter's two planes until set_depth
 AXES = "XYZABCUVW"
 DIRECTION = {"X": 0, "Y": 1, "Z": 2, "U": 0, "V": 1, "W": 2}  # of the picture, for each linear axis
+
+ROW = np.dtype([("place", "f4", 3), ("colour", "u1", 4), ("second", "f4", 3), ("second_colour", "u1", 4)])
+"""A point as ``draw_track`` wants it."""
 
 Point = tuple[float, float, float, float, float, float]
 Colour = tuple[int, int, int, int]
@@ -53,6 +58,8 @@ class positionlogger:
         self._parts = list(_parts(geometry))
         self._depths = FOAM_DEPTHS
         self._points: list[tuple[Point, Colour]] = []
+        self._rows = np.zeros(MOST_POINTS, ROW)
+        self._drawn: Point | None = None
         self._lock = threading.Lock()
         self._over = threading.Event()
         self.set_colors(jog, traverse, feed, arc, toolchange, probing)
@@ -97,14 +104,20 @@ class positionlogger:
         """Forget all points."""
         with self._lock:
             self._points.clear()
+            self._drawn = None
 
     def call(self) -> None:
-        """Refused: OpenGL is not part of this package."""
-        raise error("positionlogger.call draws with OpenGL, which is not supported; draw positionlogger.points")
+        """Draw the path in the OpenGL context in force. ``linuxcnc.error`` where OpenGL is not installed."""
+        with self._lock:
+            count = len(self._points)
+            draw_track(self._rows[:count].view("u1").reshape(count, ROW.itemsize), self.is_xyuv)
+            self._drawn = self._points[-1][0] if count else None
 
     def last(self, flag: int = 1) -> Point | None:
-        """The newest point, None when there is none; there is no drawing that ``flag`` = 1 could refer to."""
+        """The newest point of the last drawing, of all with ``flag`` = 0; None when there is none."""
         with self._lock:
+            if flag:
+                return self._drawn
             return self._points[-1][0] if self._points else None
 
     def _log(self) -> None:
@@ -119,11 +132,12 @@ class positionlogger:
             if points and _distance(point, points[-1][0]) < SAME:
                 return
             if len(points) > 1 and points[-1][1] == colour and _straight(points[-2][0], points[-1][0], point):
-                points[-1] = (point, colour)
-                return
-            points.append((point, colour))
-            if len(points) > MOST_POINTS:
+                points.pop()
+            elif len(points) == MOST_POINTS:
                 del points[: MOST_POINTS // 2]
+                self._rows[: len(points)] = self._rows[-len(points) :]
+            self._rows[len(points)] = (point[:3], colour, point[3:], colour)
+            points.append((point, colour))
 
     def _point(self, tip: Sequence[float]) -> Point:
         picture = [0.0, 0.0, 0.0]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rs274ngc.canon import CANON_UNITS_INCHES, CANON_UNITS_MM, Tool
+from rs274ngc.canon import CANON_UNITS_INCHES, Tool
 from rs274ngc.interp import Interpreter
 from rs274ngc.offline import OfflineCanon
 
@@ -53,7 +53,7 @@ class CallbackCanon(OfflineCanon):
             tools=self.tool_table(),
         )
         self.axis_mask = int(self.asked("get_axis_mask", 0x1FF))
-        self.units = CANON_UNITS_MM if units == 1.0 else CANON_UNITS_INCHES
+        self.units = CANON_UNITS_INCHES
         self.feed = 1.0      # a preview needs no F word
         self.block_delete = bool(self.asked("get_block_delete", False))
 
@@ -156,9 +156,6 @@ class CallbackCanon(OfflineCanon):
     def set_feed_rate(self, rate: float) -> None:
         super().set_feed_rate(rate)
         self.tell("set_feed_rate", self.length(rate))
-
-    def set_feed_mode(self, spindle: int, mode: int) -> None:
-        self.tell("set_feed_mode", spindle, mode)
 
     def set_traverse_rate(self, rate: float) -> None:
         self.tell("set_traverse_rate", self.length(rate))
