@@ -164,7 +164,7 @@ def main(arguments: list[str] | None = None) -> int:
     finally:
         if output != STDOUT:
             os.close(output)
-    return 1 if errors else 0
+    return 1 if errors and options.next != CONTINUE else 0
 
 
 if __name__ == "__main__":

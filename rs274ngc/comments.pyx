@@ -1,18 +1,23 @@
-"""Comments that act: MSG, DEBUG, PRINT, LOG, LOGOPEN, LOGAPPEND, LOGCLOSE, PROBEOPEN, PROBECLOSE; all others are shown.
+"""Comments that act: MSG, DEBUG, PRINT, LOG, LOGOPEN, LOGAPPEND, LOGCLOSE, PROBEOPEN, PROBECLOSE, ABORT, PYRUN, PYRELOAD.
 
-Only the last comment of a line counts. In DEBUG, PRINT and LOG, ``#123`` and ``#<name>`` are replaced by their values, in
-the format that ``%d``, ``%f`` (4 decimals) or ``%.nf`` set for the rest of the text.
+Only the last comment of a line counts; those that do not act are shown. In DEBUG, PRINT, LOG and ABORT, ``#123`` and
+``#<name>`` are replaced by their values, in the format that ``%d``, ``%f`` (4 decimals) or ``%.nf`` set for the rest of the
+text. ``;py,STATEMENT`` is a line of its own. The Python ones need a plug-in: without [PYTHON]TOPLEVEL a program runs no Python.
 """
 
 import re
 
 from rs274ngc.block cimport *
 from rs274ngc.params cimport get_named, named_exists
-from rs274ngc.state cimport PARAMETERS, State
+from rs274ngc.state cimport PARAMETERS, State, fail
 
 DEBUG_PARAMETER = 5599      # 0: DEBUG is silent
 
-ACTIVE = re.compile(r"[ \t]*(msg|debug|print|log|logopen|logappend|logclose|probeopen|probeclose)(?:,|(?=[ )])|$)(.*)", re.I | re.S)
+ACTIVE = re.compile(
+    r"[ \t]*(?:(msg|debug|print|log|logopen|logappend|logclose|probeopen|probeclose)(?:,|(?=[ )])|$)|(abort|pyrun),|(pyreload)$)(.*)",
+    re.I | re.S,
+)
+STATEMENT = "py,"
 SHOWN_MIN = 1e-4    # smaller numbers are shown as 0, as LinuxCNC's are
 DIGITS_MAX = 30     # a number this long is not shown
 FIELD = re.compile(r"#<([^>]*)>|#(\d+)|%(d|f|\.\df)")
@@ -49,7 +54,27 @@ def show_debug(State s, str text):
         s.canon.message(expand(s, text))
 
 
+def abort(State s, str text):
+    """ABORT: the program is wrong, and says why."""
+    fail(s, expand(s, text) or "aborted by the program")
+
+
+def run_python_file(State s, str text):
+    """PYRUN"""
+    if s.plugin is not None:
+        s.plugin.run_file(text.strip())
+
+
+def reload_python(State s, str text):
+    """PYRELOAD"""
+    if s.plugin is not None:
+        s.plugin.reload()
+
+
 ACTIONS = {
+    "abort": abort,
+    "pyrun": run_python_file,
+    "pyreload": reload_python,
     "msg": lambda s, text: s.canon.message(text),
     "debug": show_debug,
     "print": lambda s, text: s.canon.print_text(expand(s, text)),
@@ -66,9 +91,14 @@ ACTIONS = {
 cdef int act_on_comment(State s, Block* b) except -1:
     """Do what the last comment of the line says, or show it."""
     cdef str text = (<bytes>s.text[b.comment:b.comment + b.comment_size]).decode("utf-8", "replace")
+    if s.text[b.comment - 1] == c';':
+        if s.plugin is not None:
+            s.plugin.run_statement(text[len(STATEMENT):])
+        return 0
     match = ACTIVE.match(text)
-    if match is None or match.group(1).lower().startswith("probe"):
+    word = next(filter(None, match.groups()[:3])).lower() if match is not None else ""
+    if match is None or word.startswith("probe"):
         s.canon.comment(text.lstrip(" \t"))
     if match is not None:
-        ACTIONS[match.group(1).lower()](s, match.group(2))
+        ACTIONS[word](s, match.group(4))
     return 0

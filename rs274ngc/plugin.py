@@ -38,10 +38,11 @@ class Plugin:
         append = [settings.expanded(base, path) for path in ini.findall("PYTHON", "PATH_APPEND")]
         sys.path[:0] = [path for path in prepend if path not in sys.path]
         sys.path += [path for path in append if path not in sys.path]
-        sys.modules["interpreter"] = plugin_interpreter.module()
-        sys.modules["emccanon"] = plugin_canon.module()
         self.view = InterpView(interp)
+        sys.modules["interpreter"] = plugin_interpreter.module(self.view)
+        sys.modules["emccanon"] = plugin_canon.module()
         self.error_message = ""
+        self.toplevel = toplevel
         self.namespace: dict[str, Any] = {"__name__": "toplevel", "__file__": toplevel}
         self._forget(os.path.dirname(toplevel), *prepend, *append)
         with plugin_canon.using(interp.canon):
@@ -91,6 +92,32 @@ class Plugin:
     def has(self, module: str, name: str) -> bool:
         """Is there such a function?"""
         return callable(getattr(self.namespace.get(module), name, None))
+
+    def run_statement(self, text: str) -> None:
+        """``;py,STATEMENT``, in the toplevel script's namespace."""
+        self._run(f"py_execute({text})", text, "<string>")
+
+    def run_file(self, path: str) -> None:
+        """``(pyrun,FILE)``: the same for a file, relative to the INI file's folder; nothing where it is not there."""
+        path = os.path.join(os.path.dirname(self.toplevel), path)
+        if os.path.isfile(path):
+            with open(path, encoding="utf-8") as file:
+                self._run(f"pyrun({path})", file.read(), path)
+
+    def reload(self) -> None:
+        """``(pyreload)``: run the toplevel script again."""
+        with plugin_canon.using(self.interp.canon):
+            self._run_toplevel(self.toplevel)
+
+    def _run(self, what: str, text: str, path: str) -> None:
+        with plugin_canon.using(self.interp.canon):
+            plugin_canon.write_out(self.interp.canon)
+            try:
+                exec(compile(text, path, "exec"), self.namespace)
+            except Exception as error:
+                raise InterpError(f"{what}: {told(error)}") from error
+            finally:
+                plugin_canon.write_out(self.interp.canon)
 
     def steps(self, module: str, name: str, arguments: Any, words: dict[str, float]) -> Iterator[int]:
         """Call a function; yields INTERP_EXECUTE_FINISH where it wants the machine to come to rest."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import ModuleType
+from typing import Any
 
 from rs274ngc import plugin_canon
 
@@ -36,8 +37,8 @@ def equal(one: float, other: float) -> bool:
     return abs(one - other) < TOLERANCE_EQUAL
 
 
-def module() -> ModuleType:
-    """The module, as ``from interpreter import *`` needs it: with ``emccanon`` in it."""
+def module(this: Any) -> ModuleType:
+    """The module, as ``from interpreter import *`` needs it: with ``emccanon`` and the interpreter, ``this``, in it."""
     made = ModuleType("interpreter", __doc__)
     made.__dict__.update(
         {
@@ -46,5 +47,5 @@ def module() -> ModuleType:
             if name.isupper() or name in ("InterpreterException", "equal")
         }
     )
-    made.__dict__.update(throw_exceptions=1, emccanon=plugin_canon.module())
+    made.__dict__.update(throw_exceptions=1, emccanon=plugin_canon.module(), this=this)
     return made

@@ -21,6 +21,10 @@ from rs274ngc.state cimport PARAMETERS, SPINDLES, WAIT_INPUT, WAIT_PROBE, WAIT_T
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 
+READ_ONLY, GLOBAL, LOOKED_UP, FROM_PYTHON = 1, 2, 8, 32
+"""Bits of ``attr`` of a named parameter, as LinuxCNC numbers them."""
+
+
 class Parameters:
     """``self.params``: by number, or by name; called, it lists the names."""
 
@@ -62,12 +66,10 @@ class Parameters:
 
 
 class NamedValue:
-    """One named parameter of a level: ``key()``, and ``data()`` with its ``value`` and ``attr``."""
+    """One named parameter: ``key()``, and ``data()`` with its ``value`` and the bits of ``attr``."""
 
-    attr = 0        # neither global nor read only
-
-    def __init__(self, name, double value):
-        self._name, self.value = name, value
+    def __init__(self, name, double value, int attr=0):
+        self._name, self.value, self.attr = name, value, attr
 
     def key(self):
         return self._name
@@ -76,12 +78,49 @@ class NamedValue:
         return self
 
 
+class NamedValues:
+    """``named_params`` of a level: a list of NamedValue that also takes names; all that is global is at level 0."""
+
+    def __init__(self, State s, Frame frame, int level):
+        self._state, self._own, self._level = s, frame.named, level
+
+    def _names(self):
+        cdef State s = self._state
+        everywhere = () if self._level else (*s.globals, *PREDEFINED, *(s.plugin.named if s.plugin is not None else ()))
+        return sorted({*self._own, *everywhere})
+
+    def _named(self, name):
+        cdef State s = self._state
+        if name in self._own:
+            return NamedValue(name, self._own[name])
+        if s.plugin is not None and name in s.plugin.named:
+            attr = READ_ONLY | GLOBAL | FROM_PYTHON
+        else:
+            attr = READ_ONLY | GLOBAL | LOOKED_UP if name in PREDEFINED else GLOBAL
+        return NamedValue(name, get_named(s, name, -1), attr)
+
+    def __len__(self):
+        return len(self._names())
+
+    def __contains__(self, name):
+        return name in self._names()
+
+    def __getitem__(self, key):
+        names = self._names()
+        if isinstance(key, int):
+            return self._named(names[key])
+        if key not in names:
+            raise KeyError(f"there is no parameter #<{key}> at level {self._level}")
+        return self._named(key)
+
+
 class Context:
     """``self.sub_context[level]``: a level of calls, 0 the main program."""
 
-    def __init__(self, Frame frame):
+    def __init__(self, State s, int level):
+        cdef Frame frame = s.frames[level]
         self.subName, self.filename, self.position, self.sequence_number = frame.sub, frame.file, frame.position, frame.line
-        self.named_params = [NamedValue(name, value) for name, value in sorted(frame.named.items())]
+        self.named_params = NamedValues(s, frame, level)
 
 
 class Contexts:
@@ -93,7 +132,7 @@ class Contexts:
     def __getitem__(self, int level):
         if not 0 <= level < len(self):
             raise IndexError(f"there is no level {level} of calls")
-        return Context(self._state.frames[level])
+        return Context(self._state, level)
 
     def __len__(self):
         return len(self._state.frames)

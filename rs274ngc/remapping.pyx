@@ -8,6 +8,7 @@ built-in one, where there is one.
 
 from libc.string cimport memcpy, memset
 
+from nml.errors import InterpError
 from rs274ngc.block cimport *
 from rs274ngc.modal cimport STEP_FEED, STEP_MOTION, STEP_SPEED, STEP_TOOL, g_code, m_code, step_m
 from rs274ngc.state cimport FINISH, OK, Frame, State, fail
@@ -82,7 +83,8 @@ cdef dict words_for(State s, Block* b, remap):
     """What the argspec takes from the line, by letter in its order; an error where something is missing."""
     cdef int word
     words = {}
-    missing = conditions = ""
+    missing = []
+    conditions = ""
     if remap.argspec and ">" in remap.argspec and s.feed <= 0.0:
         conditions += "F>0,"
     if remap.argspec and "^" in remap.argspec and s.speed[0] <= 0.0:
@@ -97,12 +99,31 @@ cdef dict words_for(State s, Block* b, remap):
             if has(b, word):
                 words[letter.lower()] = b.value[word]
             elif letter.isupper():
-                missing += f" {letter}"
+                missing.append(letter)
             elif remap.positional:
                 words[letter] = 0.0
     if missing or conditions:
-        fail(s, f"user-defined {remap.name}:" + (f" missing:{missing}" if missing else "") + conditions)
+        show_call(s, remap)
+        fail(s, f"user-defined {remap.name}:" + (f" missing: {','.join(missing)}" if missing else "") + conditions)
     return words
+
+
+cdef int show_call(State s, remap) except -1:
+    """Have an error show the call of a remapped code's procedure or function, as LinuxCNC's does, in place of the line."""
+    cdef bytes text = f"O <{remap.python or remap.ngc}> call ".encode()
+    s.raw_size = <int>len(text)
+    memcpy(s.raw, <const char*>text, s.raw_size + 1)
+    s.error_at = -1
+    return 0
+
+
+def call(State s, str function, Pending pending):
+    """The function or prolog of a remapped code."""
+    try:
+        yield from s.plugin.steps("remap", function, (), pending.words)
+    except InterpError:
+        show_call(s, pending.remap)
+        raise
 
 
 def perform(State s, Pending pending):
@@ -110,7 +131,7 @@ def perform(State s, Pending pending):
     remap = pending.remap
     cdef Frame frame
     if remap.python is not None:
-        yield from s.plugin.steps("remap", remap.python, (), pending.words)
+        yield from call(s, remap.python, pending)
         return
     s.interp.flow.enter(remap.ngc, list(pending.words.values()) if remap.positional else [])
     frame = s.frame
@@ -118,7 +139,7 @@ def perform(State s, Pending pending):
     if not remap.positional:
         frame.named.update(pending.words)
     if remap.prolog is not None:
-        yield from s.plugin.steps("remap", remap.prolog, (), pending.words)
+        yield from call(s, remap.prolog, pending)
     yield BODY
     if remap.epilog is not None:
         yield from s.plugin.steps("remap", remap.epilog, (), pending.words)

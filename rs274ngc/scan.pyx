@@ -7,7 +7,7 @@ effect when the whole line was read. Errors name the place in the stripped text;
 
 from libc.math cimport acos, asin, atan2, ceil, cosl, exp, fabs, floor, fmod, isinf, isnan, log, pow, sin, sqrt, tanl
 from libc.stdlib cimport strtod
-from libc.string cimport memcpy, memset
+from libc.string cimport memcpy, memset, strncmp
 
 from rs274ngc.block cimport *
 from rs274ngc.modal cimport g_code, g_group, m_code, m_group, m_steps, word_step
@@ -449,6 +449,9 @@ cdef int skip_comments(State s, int* at) except -1:
             s.block.comment_size = i - start
             i += 1
         elif s.text[i] == c';':
+            if i == 0 and strncmp(s.text, b";py,", 4) == 0:
+                s.block.comment = 1
+                s.block.comment_size = s.size - 1
             at[0] = s.size
             return 0
         else:

@@ -81,3 +81,18 @@ def test_an_analog_output_without_a_value_is_sent_minus_one(run):
     assert ("set_motion_output_value", (1, -1.0)) in calls
     assert ("set_aux_output_value", (2, -1.0)) in calls
     assert ("set_motion_output_value", (0, 3.0)) in calls
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [("(abort, at #1)", " at 3.000000"), ("(ABORT,here)", "here"), ("g0 x1 (abort,before moving)", "before moving")],
+)
+def test_a_program_ends_itself_with_a_message_of_its_own(run, line, text):
+    with pytest.raises(InterpError) as error:
+        run(f"#1=3\n{line}\nm2\n")
+    assert error.value.message == text
+
+
+def test_a_comment_that_only_begins_like_an_order_is_a_comment(run):
+    shown = run("(abort)\n(abort here)\n(pyreload it)\nm2\n").named("comment")
+    assert shown == [("abort",), ("abort here",), ("pyreload it",)]

@@ -89,7 +89,7 @@ def test_words_become_numbered_parameters(machine):
 @pytest.mark.parametrize(
     ("argspec", "line", "message"),
     [
-        ("PQ", "m400", r"user-defined M400: missing: P Q$"),
+        ("PQ", "m400", r"user-defined M400: missing: P,Q$"),
         ("^>", "m400", r"user-defined M400:F>0,S>0,$"),
     ],
 )
@@ -267,6 +267,63 @@ def test_a_function_sees_the_speed_of_each_spindle_and_none_beyond(machine):
     )
     typed(interp, "s100 m3", "o<speeds> call", "(debug,#<_value> #<_beyond>)")
     assert messages(canon) == ["100.000000 1.000000"]
+
+
+def test_named_parameters_of_a_level_are_found_by_name_and_say_what_they_are(machine):
+    interp, canon = machine(
+        oword="""
+        def attributes(self):
+            named = self.sub_context[0].named_params
+            bits = [named[name].attr for name in ("_wide", "_motion_mode", "_mine")]
+            assert [item.data().value for item in named if item.key() == "_wide"] == [3.0], bits
+            assert "own" in self.sub_context[0].named_params and "none" not in named
+            return bits[0] * 10000 + bits[1] * 100 + bits[2]
+        """,
+        namedparams="def _mine(self): return 1.0\n",
+    )
+    typed(interp, "#<_wide> = 3 #<own> = 4", "o<attributes> call", "(debug,#<_value>)")
+    assert messages(canon) == ["21135.000000"]
+
+
+@pytest.mark.parametrize(
+    ("remap", "line", "block"),
+    [
+        ("M400 argspec=P ngc=m400", "m400", "O <m400> call "),
+        ("M400 prolog=wrong ngc=m400", "m400 p1", "O <m400> call "),
+        ("M400 py=wrong", "m400 p1", "O <wrong> call "),
+        ("M400 epilog=wrong ngc=m400", "m400 p1", "o<m400> endsub [5]"),
+        ("M400 ngc=m400", "m400 p1", "g1 x1"),
+    ],
+)
+def test_an_error_shows_the_call_of_the_remapped_code_or_the_line_of_its_procedure(machine, remap, line, block):
+    procedure = "g1 x1" if block == "g1 x1" else "g0 x1"
+    interp, _ = machine(remap, python="def wrong(self, **words): return 'wrong'\n", m400=procedure)
+    with pytest.raises(InterpError) as error:
+        typed(interp, line)
+    assert error.value.block == block
+
+
+def test_a_statement_of_python_stands_in_a_line_of_its_own(machine, tmp_path):
+    interp, _ = machine(python="seen = []\n")
+    (tmp_path / "more.py").write_text("remap.seen.append('file')\n")
+    typed(interp, ";py,remap.seen.append(1)", "(pyrun,more.py)", "(pyrun,none.py)", "g0 x1 ;py,remap.seen.append(2)")
+    typed(interp, ";py,from interpreter import *", ";py,remap.seen.append(this.call_level)")
+    assert interp.state.plugin.namespace["remap"].seen == [1, "file", 0]
+    with pytest.raises(InterpError, match=r"py_execute\(1/0\): ZeroDivisionError"):
+        typed(interp, ";py,1/0")
+
+
+def test_a_program_runs_no_python_where_no_plug_in_is_set_up(run, capfd):
+    run(";py,print('run')\n(pyrun,more.py)\n(pyreload)\nm2\n")
+    assert "run" not in capfd.readouterr().out
+
+
+def test_the_toplevel_script_is_run_again_when_a_program_asks(machine, tmp_path):
+    interp, _ = machine(python="mark = 0\n")
+    typed(interp, ";py,remap.mark = 1")
+    (tmp_path / "toplevel.py").write_text("import remap, oword, namedparams\nremap.again = remap.mark\n")
+    typed(interp, "(pyreload)")
+    assert interp.state.plugin.namespace["remap"].again == 1
 
 
 def test_the_feed_mode_is_one_of_the_interpreter_modules_names(machine):
