@@ -19,8 +19,9 @@ from functools import partial
 from typing import Any
 
 from hal import _shm
+from hal._calls import PythonCall
 from hal._shm import BIT, IN, IO, OUT, PORT, REALTIME, RO, RW, S32, THREAD_COMP, Comp, Funct, Item
-from hal._threads import NativeThread, PythonCall, Scheduler, lock_memory
+from hal._threads import NativeThread, Scheduler, lock_memory
 from hal.components import find as find_component
 from hal.core import LOCK_CONFIG, LOCK_LOAD, Hal
 from hal.finder import name_of, native_library, realtime_module

@@ -23,8 +23,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from hal._calls import Memory
 from hal._shm import BIT, FLOAT, IN, IO, OUT, RO, RW, S32, S64, U32, U64
-from hal._threads import Memory
 from hal.values import TYPE_NAMES
 from nml.errors import HalError
 

@@ -10,8 +10,8 @@ from hal.stream cimport (
     MAX_COLUMNS, Stream, fifo_depth, fifo_next, fifo_publish, fifo_release, fifo_room, hal_fifo,
 )
 
+from hal._calls import Memory
 from hal._shm import BIT, IN, IO, OUT, S32
-from hal._threads import Memory
 from hal.stream import LETTERS, TYPE_LETTERS, check_types
 from nml.errors import HalError
 

@@ -6,8 +6,8 @@ from libc.stdint cimport int32_t, int64_t, uint8_t
 from hal._messages cimport say
 from hal.cell cimport hal_at as at, hal_pin
 
+from hal._calls import Memory
 from hal._shm import BIT as BIT_TYPE, IN, RW
-from hal._threads import Memory
 from hal.components.declare import BIT, FLOAT, S32, declare, numbers, param_rw, pin_in, pin_out
 from nml.errors import HalError
 

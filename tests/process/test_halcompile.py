@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from hal._threads import call
+from hal._calls import call
 from hal.finder import MODULES_VARIABLE
 from hal.realtime import REALTIME_VARIABLE, Host
 from nml.errors import HalError

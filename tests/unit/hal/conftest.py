@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from hal._threads import call
+from hal._calls import call
 from hal.core import Hal
 from hal.realtime import REALTIME_VARIABLE, Host
 

@@ -191,7 +191,7 @@ def test_a_python_component_that_raises_is_stopped_and_named(
     host.hal.set_item("doubler.in", "-1")
     funct = host.hal.segment.find_funct("doubler")
     assert funct is not None
-    from hal._threads import call
+    from hal._calls import call
 
     for _ in range(3):
         call(funct.code, funct.arg, 1000)
