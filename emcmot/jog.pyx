@@ -30,9 +30,9 @@ cdef double within(double value, double low, double high) noexcept nogil:
 cdef int aim(FreePlanner* p, int kind, double vel, double offset, double low, double high, int jogging) noexcept nogil:
     """Set the target of a jog within ``low`` and ``high``; -1 where it is at that limit or beyond it already.
 
-    Increments add up: a second one counts from the target of the first.
+    Increments add up: a second one counts from the target of the first. A jog that goes on may be given another speed.
     """
-    cdef double origin = p.target if jogging and p.enabled else p.pos
+    cdef double origin = p.target if kind == JOG_INCREMENT and jogging and p.enabled else p.pos
     cdef double target
     if kind == JOG_CONTINUOUS:
         target = high if vel > 0.0 else low
@@ -40,7 +40,6 @@ cdef int aim(FreePlanner* p, int kind, double vel, double offset, double low, do
         target = origin + offset if vel > 0.0 else origin - offset
     else:
         target = offset
-        origin = p.pos
     # outside of the limits only the way back is open
     if target >= high or target <= low:
         target = within(target, min(low, origin), max(high, origin))

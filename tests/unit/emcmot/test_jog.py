@@ -82,6 +82,21 @@ def test_the_target_of_an_absolute_jog_may_change_on_the_way(state: str) -> None
 
 
 @pytest.mark.parametrize("state", MODES)
+def test_a_continuous_jog_that_goes_on_takes_another_speed(state: str) -> None:
+    m = mill(state)
+    for vel in (20.0, 60.0, 10.0, -30.0):
+        jog(m, C.JOG_CONT, vel=vel)
+        before = position(m)
+        m.step(500)
+        begun = position(m)
+        m.step(1)
+        assert position(m) - begun == pytest.approx(vel * 0.001)
+        assert (position(m) > before) == (vel > 0.0)
+    assert m.errors() == []
+    assert m.worst_acc <= 1.0 + 1e-6
+
+
+@pytest.mark.parametrize("state", MODES)
 @pytest.mark.parametrize("how", ["command", "abort", "pin", "immediate pin"])
 def test_a_jog_stops_under_its_acceleration(state: str, how: str) -> None:
     m = mill(state)
