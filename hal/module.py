@@ -90,8 +90,8 @@ class Duplicate(HalError, ValueError):
     """What LinuxCNC's module raises as ValueError."""
 
 
-class Pin(Port):
-    """What ``newpin`` and ``newparam`` return. ``get``, ``set`` and, for type HAL_PORT, what moves bytes are native."""
+class item(Port):
+    """A pin or parameter of a component. ``get``, ``set`` and, for type HAL_PORT, what moves bytes are native."""
 
     __slots__ = ("_is_pin", "_name")
 
@@ -143,6 +143,57 @@ class Pin(Port):
         return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._name} {TYPE_NAMES[self.type]}>"
 
 
+class _ItemWrap:
+    """A pin or parameter in plain Python, so that a class may have other bases besides, as GObject's in ``hal_glib``.
+
+    The methods are those of the ``item``, as attributes: a call of ``get`` or ``set`` goes straight to it.
+    """
+
+    def __init__(self, item: item | _ItemWrap) -> None:
+        self._item_wrap(item._item if isinstance(item, _ItemWrap) else item)
+
+    def _item_wrap(self, item: item) -> None:
+        self._item = item
+        self.get, self.set = item.get, item.set
+
+    @property
+    def name(self) -> str:
+        """As it was given to ``newpin``, without the component's prefix."""
+        return self._item.name
+
+    @property
+    def type(self) -> int:
+        return self._item.type
+
+    @property
+    def dir(self) -> int:
+        return self._item.dir
+
+    @property
+    def value(self) -> Any:
+        return self._item.get()
+
+    @value.setter
+    def value(self, value: Any) -> None:
+        self._item.set(value)
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "_item":
+            raise AttributeError("Pin.__init__ was not called")
+        return getattr(self._item, name)
+
+    def __repr__(self) -> str:
+        return repr(self._item)
+
+
+class Pin(_ItemWrap):
+    """What ``newpin`` returns."""
+
+
+class Param(_ItemWrap):
+    """What ``newparam`` returns."""
+
+
 class component(Items):
     """A user component. Pins are items and attributes: ``c["in"]``, ``c.out = 1`` (names with ``-``: items only)."""
 
@@ -159,27 +210,29 @@ class component(Items):
         item = self._hal.add_pin(self._record, f"{self._prefix}.{name}", type, dir)
         if safe is not None:
             item.set_safe(safe)
-        return self._keep(name, item, True)
+        pin = self._pins[name] = Pin(self._keep(name, item, True))
+        return pin
 
-    def newparam(self, name: str, type: int, dir: int) -> Pin:
+    def newparam(self, name: str, type: int, dir: int) -> Param:
         """A parameter ``PREFIX.name``."""
         self._check_alive()
         self._check_free(name)
-        return self._keep(name, self._hal.add_param(self._record, f"{self._prefix}.{name}", type, dir), False)
+        item = self._hal.add_param(self._record, f"{self._prefix}.{name}", type, dir)
+        param = self._pins[name] = Param(self._keep(name, item, False))
+        return param
 
     def _check_free(self, name: str) -> None:
         if name in self:
             raise Duplicate(f"Duplicate pin name '{name}'")
 
-    def _keep(self, name: str, item: Item, is_pin: bool) -> Pin:
-        self.keep(name, item)
-        pin = self._pins[name] = Pin(item, name, is_pin)
-        return pin
+    def _keep(self, name: str, record: Item, is_pin: bool) -> item:
+        self.keep(name, record)
+        return item(record, name, is_pin)
 
-    def getpin(self, name: str) -> Pin:
+    def getpin(self, name: str) -> Pin | Param:
         if name not in self:
             raise AttributeError(f"Pin '{name}' does not exist in component '{self._prefix}'")
-        pin: Pin = self._pins[name]
+        pin: Pin | Param = self._pins[name]
         return pin
 
     getitem = getparam = getpin

@@ -252,17 +252,17 @@ def draw_dwells(str geometry, list dwells not None, double alpha, int for_select
             gl.End()
 
 
-def draw_track(const unsigned char[:, ::1] rows, bint pairs) -> None:
+def draw_track(const unsigned char[::1] rows, int count, bint pairs) -> None:
     """Draw the tool's path: ``rows`` of 32 bytes, place (3 float32), colour (4 bytes), and both again for a second place.
 
     As a strip of first places; or, for ``pairs``, as a line from the first to the second place of each row.
     """
-    cdef int count = rows.shape[0], stride = 16 if pairs else 32
+    cdef int stride = 16 if pairs else 32
     find_gl()
-    if not count:
+    if count <= 0 or rows.shape[0] < count * 32:
         return
-    gl.VertexPointer(3, GL_FLOAT, stride, &rows[0, 0])
-    gl.ColorPointer(4, GL_UNSIGNED_BYTE, stride, &rows[0, 12])
+    gl.VertexPointer(3, GL_FLOAT, stride, &rows[0])
+    gl.ColorPointer(4, GL_UNSIGNED_BYTE, stride, &rows[12])
     gl.EnableClientState(GL_COLOR_ARRAY)
     gl.EnableClientState(GL_VERTEX_ARRAY)
     if pairs:

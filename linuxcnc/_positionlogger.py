@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 import math
+import struct
 import threading
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from linuxcnc._drawing import draw_track
 
@@ -24,8 +23,8 @@ FOAM_DEPTHS = (0.0, 1.5)  # Z and W of a foam cutter's two planes until set_dept
 AXES = "XYZABCUVW"
 DIRECTION = {"X": 0, "Y": 1, "Z": 2, "U": 0, "V": 1, "W": 2}  # of the picture, for each linear axis
 
-ROW = np.dtype([("place", "f4", 3), ("colour", "u1", 4), ("second", "f4", 3), ("second_colour", "u1", 4)])
-"""A point as ``draw_track`` wants it."""
+ROW = struct.Struct("=3f4B3f4B")
+"""A point as ``draw_track`` wants it: place, colour, second place, colour."""
 
 Point = tuple[float, float, float, float, float, float]
 Colour = tuple[int, int, int, int]
@@ -58,7 +57,7 @@ class positionlogger:
         self._parts = list(_parts(geometry))
         self._depths = FOAM_DEPTHS
         self._points: list[tuple[Point, Colour]] = []
-        self._rows = np.zeros(MOST_POINTS, ROW)
+        self._rows = bytearray(MOST_POINTS * ROW.size)
         self._drawn: Point | None = None
         self._lock = threading.Lock()
         self._over = threading.Event()
@@ -110,7 +109,7 @@ class positionlogger:
         """Draw the path in the OpenGL context in force. ``linuxcnc.error`` where OpenGL is not installed."""
         with self._lock:
             count = len(self._points)
-            draw_track(self._rows[:count].view("u1").reshape(count, ROW.itemsize), self.is_xyuv)
+            draw_track(self._rows, count, self.is_xyuv)
             self._drawn = self._points[-1][0] if count else None
 
     def last(self, flag: int = 1) -> Point | None:
@@ -135,8 +134,8 @@ class positionlogger:
                 points.pop()
             elif len(points) == MOST_POINTS:
                 del points[: MOST_POINTS // 2]
-                self._rows[: len(points)] = self._rows[-len(points) :]
-            self._rows[len(points)] = (point[:3], colour, point[3:], colour)
+                self._rows[: len(points) * ROW.size] = self._rows[-len(points) * ROW.size :]
+            ROW.pack_into(self._rows, len(points) * ROW.size, *point[:3], *colour, *point[3:], *colour)
             points.append((point, colour))
 
     def _point(self, tip: Sequence[float]) -> Point:

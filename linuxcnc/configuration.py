@@ -12,6 +12,7 @@ import posix_ipc
 
 import nml
 from hal.session import find_hal_file
+from linuxcnc._constants import version
 from linuxcnc.motionmodules import HOMING, PLANNER
 from linuxcnc.options import Overrides
 from linuxcnc.programs import MODULES, SERVICES, Command, Programs
@@ -24,6 +25,17 @@ PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
 SYSTEM_PYTHON = Path("/usr/bin/python3")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
+FOR_DISPLAYS = {
+    "LINUXCNC_HOME": "/usr",
+    "LINUXCNC_TCL_DIR": "/usr/lib/tcltk/linuxcnc",
+    "LINUXCNC_LANG_DIR": "/usr/lib/tcltk/linuxcnc/msgs",
+    "LINUXCNC_HELP_DIR": "/usr/share/doc/linuxcnc",
+    "LINUXCNC_NCFILES_DIR": str(NC_FILES),
+    "LINUXCNC_EMCSH": "/usr/bin/wish8.6",
+    "LINUXCNCVERSION": version,
+    "HALCMD": "halcmd",
+}
+"""What LinuxCNC's displays expect of the environment: where Debian's package has their parts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +138,9 @@ class Configuration:
 
     def environment(self) -> dict[str, str]:
         """The environment of every process of this machine."""
-        variables = dict(os.environ)
+        variables = FOR_DISPLAYS | dict(os.environ)
+        if variables.get("LINUXCNC_OPENGL_PLATFORM", "glx") == "glx":
+            variables["PYOPENGL_PLATFORM"] = "x11"
         variables |= {
             namespace.VARIABLE: namespace.namespace(),
             clock.VARIABLE: repr(clock.speed()),
@@ -134,7 +148,8 @@ class Configuration:
             "CONFIG_DIR": str(self.folder),
             "HALLIB_DIR": str(HALLIB),
             "HALLIB_PATH": os.pathsep.join([*map(str, self._hal_folders), ".", str(HALLIB)]),
-            "LINUXCNC_NCFILES_DIR": str(NC_FILES),
+            "TRAJ_COORDINATES": self.ini.find("TRAJ", "COORDINATES") or "",
+            "KINS_KINEMATICS": self.ini.find("KINS", "KINEMATICS") or "",
             "PATH": self.programs.search_path(),
             "PYTHONPATH": os.pathsep.join(filter(None, [*_packages(), variables.get("PYTHONPATH")])),
         }

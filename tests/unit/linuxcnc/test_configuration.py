@@ -35,6 +35,9 @@ def test_the_environment_names_what_scripts_expect(tmp_path):
     found = configuration(tmp_path).environment()
     assert found["INI_FILE_NAME"] == str(tmp_path / "mill_mm.ini")
     assert found["CONFIG_DIR"] == str(tmp_path)
+    assert found["TRAJ_COORDINATES"] == "X Y Z"
+    assert found["KINS_KINEMATICS"] .split()[0] == "trivkins"
+    assert found["LINUXCNC_TCL_DIR"] == "/usr/lib/tcltk/linuxcnc"
 
 
 @pytest.mark.parametrize(
