@@ -38,6 +38,7 @@ cdef enum:
     LINE_SIZE = 255  # room for the characters of a line and the closing zero
     LINE_MAX = 252   # characters of a line of a program, as in LinuxCNC
     MAX_SETTINGS = 50
+    MISSING = -1     # a P, Q or H word of this value counts as not written wherever LinuxCNC takes it so
 
 
 cdef enum:

@@ -10,10 +10,10 @@ from rs274ngc.comments cimport act_on_comment
 from rs274ngc.compensation cimport set_compensation
 from rs274ngc.context cimport context
 from rs274ngc.cycles cimport canned_cycle
-from rs274ngc.lathe cimport check_lathe, lathe_cycle
+from rs274ngc.lathe cimport lathe_cycle
 from rs274ngc.machine cimport (
     analog_output, check_orient, coolant, orient, output, overrides, program_end, program_stop, spindle, user_code,
-    wait_input, check_wait, subprogram_end,
+    wait_input, subprogram_end,
 )
 from rs274ngc.modal cimport *
 from rs274ngc.modes cimport (
@@ -26,7 +26,7 @@ from rs274ngc.motion cimport (
 from rs274ngc.offsets cimport (
     axis_offset, check_axis_offset, check_g10, select_origin, set_data, store_reference, tool_length,
 )
-from rs274ngc.path cimport polar_to_xy
+from rs274ngc.path cimport check_polar, polar_to_xy
 from rs274ngc.remapping cimport take_over
 from rs274ngc.splines cimport cubic_spline, nurbs_end, nurbs_knot, nurbs_point, quadratic_spline
 from rs274ngc.state cimport State, fail, fail_word
@@ -83,19 +83,19 @@ g(5.1, 1, "IJ", quadratic_spline, "Quadratic spline", NULL, AXES_NEEDED)
 g(5.2, 1, "PL", nurbs_point, "NURBS: control point")
 g(5.3, 1, "P", nurbs_end, "NURBS: end")
 g(6.2, 1, "KPQR", nurbs_knot, "NURBS with knots: control point with weight R and knot K, order P")
-g(33, 1, "K$", spindle_feed, "Spindle-synchronised move", check_threading, AXES_NEEDED)
-g(33.1, 1, "K$I", rigid_tap, "Rigid tapping", check_threading, AXES_NEEDED)
+g(33, 1, "EK$", spindle_feed, "Spindle-synchronised move; E is ignored", check_threading, AXES_NEEDED)
+g(33.1, 1, "EK$I", rigid_tap, "Rigid tapping; E is ignored", check_threading, AXES_NEEDED)
 g(38.2, 1, "", probe, "Probe towards, error if nothing was found", NULL, AXES_NEEDED)
 g(38.3, 1, "", probe, "Probe towards", NULL, AXES_NEEDED)
 g(38.4, 1, "", probe, "Probe away, error if contact was not lost", NULL, AXES_NEEDED)
 g(38.5, 1, "", probe, "Probe away", NULL, AXES_NEEDED)
-g(70, 1, "DEPQ", lathe_cycle, "Lathe finishing cycle", check_lathe)
-g(71, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z", check_lathe)
-g(71.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, without pockets", check_lathe)
-g(71.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, after the first pocket", check_lathe)
-g(72, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X", check_lathe)
-g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets", check_lathe)
-g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket", check_lathe)
+g(70, 1, "DEPQ", lathe_cycle, "Lathe finishing cycle")
+g(71, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z")
+g(71.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, without pockets")
+g(71.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along Z, after the first pocket")
+g(72, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X")
+g(72.1, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, without pockets")
+g(72.2, 1, "DIQR", lathe_cycle, "Lathe roughing cycle along X, after the first pocket")
 g(73, 1, "LQR", canned_cycle, "Drilling cycle with chip breaking", NULL, AXES_NEEDED | NO_ROTARY)
 g(74, 1, "LPR$", canned_cycle, "Left-hand tapping cycle", NULL, AXES_NEEDED | NO_ROTARY)
 g(76, 1, "EHIJKLPQR$", threading_cycle, "Threading cycle", check_g76, AXES_NEEDED)
@@ -128,8 +128,8 @@ g(21, 6, "", set_units, "Millimetres")
 g(40, 7, "", set_compensation, "Cutter compensation off")
 g(41, 7, "D", set_compensation, "Cutter compensation left")
 g(42, 7, "D", set_compensation, "Cutter compensation right")
-g(41.1, 7, "DL", set_compensation, "Cutter compensation left with diameter D")
-g(42.1, 7, "DL", set_compensation, "Cutter compensation right with diameter D")
+g(41.1, 7, "DLR", set_compensation, "Cutter compensation left with diameter D; R is ignored")
+g(42.1, 7, "DLR", set_compensation, "Cutter compensation right with diameter D; R is ignored")
 g(43, 8, "H", tool_length, "Tool length offset of a tool")
 g(43.1, 8, "", tool_length, "Tool length offset of the axis words", NULL, AXES_TAKEN)
 g(43.2, 8, "H", tool_length, "Additional tool length offset", NULL, AXES_TAKEN)
@@ -171,7 +171,7 @@ m(62, M_OUTPUTS, "P", output, "Digital output on with motion")
 m(63, M_OUTPUTS, "P", output, "Digital output off with motion")
 m(64, M_OUTPUTS, "P", output, "Digital output on")
 m(65, M_OUTPUTS, "P", output, "Digital output off")
-m(66, M_OUTPUTS, "ELPQ", wait_input, "Wait for an input", check_wait)
+m(66, M_OUTPUTS, "ELPQ", wait_input, "Wait for an input")
 m(67, M_OUTPUTS, "EQ", analog_output, "Analog output with motion")
 m(68, M_OUTPUTS, "EQ", analog_output, "Analog output")
 m(70, M_SPINDLE, "", context, "Save modal state")
@@ -217,6 +217,8 @@ cdef int enhance(State s, Block* b) except -1:
     cdef bint taken_by_0 = b.g[0] >= 0 and g_code[b.g[0]].flags & AXES_TAKEN
     cdef bint taken = axes_taken(b)
     b.motion = -1
+    if b.words & M_POLAR:
+        check_polar(s, b)
     if b.g[1] >= 0:
         if b.g[1] == 53 and b.g[0] >= 0:
             return fail(s, "Two g codes used from same modal group", b.g_at[1])
@@ -239,10 +241,8 @@ cdef int enhance(State s, Block* b) except -1:
         b.motion = s.motion
     elif b.words & M_IJK and (s.motion == 20 or s.motion == 30):
         b.motion = s.motion
-    if b.words & M_POLAR:
-        if b.motion < 0:
-            return fail(s, "Polar coordinates can only be used for motion")
-        polar_to_xy(s, b)
+    if b.words & M_POLAR and b.motion < 0:
+        return fail(s, "Polar coordinates can only be used for motion")
     if b.motion >= 0:
         b.steps |= 1ULL << STEP_MOTION
     return 0
@@ -279,8 +279,6 @@ cdef int check(State s, Block* b) except -1:
     for group in range(G_GROUPS):
         if b.g[group] >= 0:
             allowed |= g_code[b.g[group]].words
-            if group > 1 and g_code[b.g[group]].check != NULL:
-                g_code[b.g[group]].check(s, b, b.g[group])
     if b.motion >= 0:
         allowed |= g_code[b.motion].words
     if has(b, W_S):
@@ -295,6 +293,9 @@ cdef int check(State s, Block* b) except -1:
         for word, message in UNUSED:
             if has(b, word) and not (allowed >> <int>word) & 1:
                 return fail_word(s, message, word)
+    for group in range(2, G_GROUPS):
+        if b.g[group] >= 0 and g_code[b.g[group]].check != NULL:
+            g_code[b.g[group]].check(s, b, b.g[group])
     if b.motion >= 0 and g_code[b.motion].check != NULL:
         g_code[b.motion].check(s, b, b.motion)
     if b.m_count:
@@ -321,6 +322,8 @@ cdef int run(State s, Block* b) except -1:
         if step == STEP_MOTION:
             if g_code[b.motion].run != canned_cycle:
                 s.in_cycles = False
+            if b.words & M_POLAR:
+                polar_to_xy(s, b)
             g_code[b.motion].run(s, b, b.motion)
         elif step_g[step] >= 0:
             code = b.g[step_g[step]]

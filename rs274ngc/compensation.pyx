@@ -94,6 +94,16 @@ cdef class Pending:
                 getattr(canon, name)(*arguments)
         return 0
 
+    def scale(self, double factor):
+        """The unit of length has changed."""
+        cdef Move move
+        for move in self.moves:
+            for k in range(9):
+                if k < 3 or k > 5:
+                    move.end[k] *= factor
+            move.su, move.sv, move.cu, move.cv = move.su * factor, move.sv * factor, move.cu * factor, move.cv * factor
+        self.nose_u, self.nose_v = self.nose_u * factor, self.nose_v * factor
+
     cdef int make(self, Canon canon, Move move) except -1:
         cdef double[9] e
         memcpy(e, move.end, sizeof(e))
@@ -154,7 +164,7 @@ cdef int compensation_off(State s) except -1:
     flush(s)
     s.canon.comment("interpreter: cutter radius compensation off")
     if s.comp_side != SIDE_OFF and s.comp_radius > 0.0:
-        s.arc_not_allowed = True
+        s.arc_not_allowed = not s.comp_first
         s.pos[0], s.pos[1], s.pos[2] = s.comp_x, s.comp_y, s.comp_z
     s.comp_side = SIDE_OFF
     return 0

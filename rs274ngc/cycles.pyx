@@ -81,6 +81,8 @@ cdef int peck(State s, Block* b, Hole* h) except -1:
     """G83 clears the hole after every Q, G73 only breaks the chip"""
     cdef double clearance = PECK_CLEARANCE_INCH * (1.0 if s.units == INCHES else 25.4)
     cdef double depth = h.r - s.cycle_q
+    if s.cycle_q <= 0.0:
+        return fail(s, "Negative or zero q value used", b.at[W_Q] if has(b, W_Q) else b.g_at[1])
     if (h.r - h.bottom) / s.cycle_q > REPEATS_MAX:
         return fail_word(s, "Too many pecks in cycle", W_Q)
     while depth > h.bottom:
@@ -216,15 +218,15 @@ cdef int check_words(State s, Block* b, Hole* h) except -1:
 cdef int sticky_numbers(State s, Block* b, int code) except -1:
     """P, Q, I, J, K stay from line to line of the same cycle; those that are missing are an error."""
     cdef bint again = s.motion == code
-    if has(b, W_P):
+    if value_or(b, W_P, MISSING) != MISSING:
         s.cycle_p = b.value[W_P]
     elif code in (820, 860, 880, 890):
         if not again:
             return fail(s, f"Dwell time p word missing with g{code // 10}", b.g_at[1])
     if code == 730 or code == 830:
-        if has(b, W_Q):
+        if value_or(b, W_Q, MISSING) != MISSING:
             s.cycle_q = b.value[W_Q]
-        if (not has(b, W_Q) and not again) or s.cycle_q <= 0.0:
+        elif not again:
             return fail(s, f"Q word missing with g{code // 10}", b.g_at[1])
     if code == 870:
         for word, letter in ((W_I, "I"), (W_J, "J"), (W_K, "K")):
@@ -293,7 +295,7 @@ cdef int canned_cycle(State s, Block* b, int code) except -1:
         if k > 0 and s.incremental and b.words & M_POLAR:
             b.words &= ~<unsigned int>((1 << W_X) | (1 << W_Y))
             polar_to_xy(s, b)
-            step_x, step_y = b.value[W_X], b.value[W_Y]
+            step_x, step_y = in_radius(s, b, h.first, 0.0), in_radius(s, b, h.second, 0.0)
         h.x += step_x
         h.y += step_y
         at_place(s, &h, h.r)

@@ -99,12 +99,9 @@ cdef class Flow:
         cdef int from_line = s.line
         cdef char c
         while True:
-            self.line_start = self.source.position
-            size = self.source.next_line(s.raw, LINE_SIZE, LINE_MAX)
+            size = self.read_raw()
             if size == -1:
                 return -1
-            s.line = self.source.line
-            s.raw_size = max(size, 0)
             i = self.o_word_at(size)
             if i < 0:
                 continue
@@ -184,11 +181,18 @@ cdef class Flow:
 
     def do_sub(self, str label, int at):
         """A definition that the program runs into: remember it, step over it."""
-        if len(self.s.frames) > 1 and self.s.frame.sub:
-            fail(self.s, "Nested subroutine definition", at)
+        cdef State s = self.s
+        if len(s.frames) > 1 and s.frame.sub:
+            fail(s, "Nested subroutine definition", at)
         self.remember(label, False)
-        if self.skip_to(label, ("endsub",)) == -1:
-            fail(self.s, "File ended with no percent sign or program end")
+        found = self.skip_to(label, ("endsub",))
+        if found == -1:
+            fail(s, "File ended with no percent sign or program end")
+        try:
+            self.read_return(found[0])      # as if it had been called, as in LinuxCNC
+        except InterpError as error:
+            if not error.message.startswith("Named parameter"):     # it may be one that only a call defines
+                raise
 
     def do_endsub(self, str label, int at):
         self.leave(label, at)
@@ -356,10 +360,10 @@ cdef class Flow:
                 caller.locals[k] = s.params[k]
                 if k <= len(arguments):
                     s.params[k] = arguments[k - 1]
-                elif not s.features & FEATURE_OWORD_N_ARGS:
+                else:
                     s.params[k] = 0.0
-        s.return_value = 0.0
-        s.value_returned = False
+        if s.features & FEATURE_OWORD_N_ARGS:
+            frame.named["n_args"] = float(len(arguments))
         s.frames.append(frame)
         s.frame = frame
 
@@ -407,7 +411,7 @@ cdef class Flow:
             del s.subs[label]
             return False
         if fanuc and not numbered:
-            fail(s, "'O.... sub' subroutine must be called with 'O.... call'")
+            return False        # the search will say so, at its line
         self.source = source
         self.jump(position, line)
         return True
@@ -437,27 +441,28 @@ cdef class Flow:
         return None
 
     def leave(self, str label, int at):
-        """endsub and return, with a value"""
+        """endsub and return"""
         cdef State s = self.s
-        cdef int i = at
-        cdef double value
         if s.frame.fanuc:
             fail(s, "Fanuc 'O....' subroutine definition must end with 'M99'", at)
         if not s.frame.sub:
             fail(s, f"{s.line}: not in a subroutine definition: '{s.interp.block_text}'", at)
-        returned = False
-        value = 0.0
-        if s.text[i] == c'[':
-            read_value(s, &i, &value)
-            returned = True
-        self.end_of_line(i)
+        self.read_return(at)
         if s.frame.remap is not None:       # its epilog is still to see this level
             s.resume = s.frame.remap
             s.frame.remap = None
         else:
             self.pop()
-        s.return_value = value
-        s.value_returned = returned
+
+    def read_return(self, int at):
+        """The value behind endsub or return, which stays until the next of them."""
+        cdef State s = self.s
+        cdef double value = 0.0
+        cdef bint given = s.text[at] == c'['
+        if given:
+            read_value(s, &at, &value)
+        self.end_of_line(at)
+        s.return_value, s.value_returned = value, given
 
     def pop(self):
         """Back to the caller."""
@@ -506,6 +511,7 @@ cdef class Flow:
             self.jump(s.frame.body, s.frame.body_line)
         else:
             self.pop()
+            s.return_value, s.value_returned = 0.0, False
         return True
 
 

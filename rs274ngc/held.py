@@ -9,9 +9,10 @@ from rs274ngc.canon import Canon
 
 AT_ONCE = (
     "get_", "wait", "user_command_exists", "message", "print_text", "log", "select_plane", "select_tool",
-    "set_tool_table_entry",
+    "set_tool_table_entry", "use_length_units",
 )  # fmt: skip
-"""How the calls begin that need not wait for a move: questions, words to the operator, what only prepares."""
+"""How the calls begin that need not wait for a move: questions, words to the operator, what only prepares;
+and the unit of length, to which what is held is converted."""
 
 
 class HeldCanon(Canon):

@@ -26,7 +26,7 @@ from rs274ngc.scan cimport read_unsigned, scan_words, strip
 from rs274ngc.settings import apply_settings
 from rs274ngc.source cimport Source
 from rs274ngc.state cimport (
-    ENDFILE, EXIT, FINISH, OK, PARAMETERS, SPINDLES, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, Frame, State, fail,
+    ENDFILE, EXIT, FINISH, OK, PARAMETERS, SPINDLES, WAIT_INPUT, WAIT_PROBE, WAIT_TOOL, Frame, State, fail, fail_word,
 )
 from rs274ngc.tools cimport refresh_tool_parameters
 
@@ -77,8 +77,9 @@ cdef class Interpreter:
         """As after the start: default modes, and zero in the parameters that no file keeps. Names and retract mode stay."""
         cdef State s = self.state
         cdef int number
+        kept = s.persistent | set(varfile.REQUIRED)
         for number in range(1, 5400):
-            if number not in s.persistent:
+            if number not in kept:
                 s.params[number] = 0.0
         s.set_defaults()
         s.line = 0
@@ -375,10 +376,13 @@ cdef class Interpreter:
         scan_words(s, at)
         if not has(&s.block, W_P):
             return fail(s, "Found 'm98' code with no P-word", at)
+        number = round(s.block.value[W_P])
+        if abs(s.block.value[W_P] - number) > 0.0001:
+            return fail_word(s, "Non integer value for integer", W_P)
         repeats = value_or(&s.block, W_L, 1.0)
         s.block.steps = 0
         if repeats >= 1.0:
-            self.flow.enter(str(int(s.block.value[W_P] + 0.5)), [], True, <long>repeats)
+            self.flow.enter(str(number), [], True, <long>repeats)
         return 0
 
     def end_subprogram(self):

@@ -3,5 +3,4 @@
 from rs274ngc.block cimport Block
 from rs274ngc.state cimport State
 
-cdef int check_lathe(State s, Block* b, int code) except -1
 cdef int lathe_cycle(State s, Block* b, int code) except -1

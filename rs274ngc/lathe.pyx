@@ -73,21 +73,16 @@ cdef class Reader:
         s.comp_x, s.comp_z = end[X], end[Z]
 
 
-cdef int check_lathe(State s, Block* b, int code) except -1:
-    """What G70 to G72 need."""
-    if not has(b, W_Q):
-        return fail(s, "G7x.x  requires a Q word", b.g_at[1])
-    if s.plane != XZ and b.g[2] != 180 or b.g[2] >= 0 and b.g[2] != 180:
-        return fail(s, f"G{code // 10}.{code % 10} can only be used in XZ plane (G18)", b.g_at[1])
-    return 0
-
-
 cdef int lathe_cycle(State s, Block* given, int code) except -1:
     """Move to the start, read the profile, cut it"""
     cdef Block b = given[0]
     cdef double q = b.value[W_Q]
     cdef bint incremental = s.incremental, absolute_centres = s.ijk_absolute, diameters = s.diameter_mode
     cdef double[9] start
+    if not has(given, W_Q):
+        return fail(s, "G7x.x  requires a Q word", b.g_at[1])
+    if s.plane != XZ:
+        return fail(s, f"G{code // 10}.{code % 10} can only be used in XZ plane (G18)", b.g_at[1])
     if code != 700 and s.comp_side != SIDE_OFF:
         return fail(s, f"G{code // 10}.{code % 10} cannot be used with cutter compensation enabled", b.g_at[1])
     find_end(s, &b, start)

@@ -14,5 +14,4 @@ cdef int program_stop(State s, Block* b, int code) except -1
 cdef int program_end(State s, Block* b, int code) except -1
 cdef int user_code(State s, Block* b, int code) except -1
 cdef int check_orient(State s, Block* b, int code) except -1
-cdef int check_wait(State s, Block* b, int code) except -1
 cdef int subprogram_end(State s, Block* b, int code) except -1

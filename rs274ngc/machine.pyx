@@ -172,31 +172,24 @@ cdef int analog_output(State s, Block* b, int code) except -1:
     return 0
 
 
-cdef int check_wait(State s, Block* b, int code) except -1:
-    """What M66 needs: one input, and a timeout if it is to wait."""
-    cdef int how = <int>value_or(b, W_L, 0.0)
-    if has(b, W_P) and has(b, W_E):
-        return fail_word(s, "Invalid to select both a digital and an analog input with M66", W_E)
-    if how > 4:
-        return fail_word(s, "L word out of range with M66", W_L)
-    return 0
-
-
 cdef int wait_input(State s, Block* b, int code) except -1:
     """M66 P or E, L how, Q timeout: the result is in #5399 for the next line"""
     cdef int how = <int>value_or(b, W_L, 0.0), index
     cdef double timeout = value_or(b, W_Q, 0.0)
     cdef bint digital = has(b, W_P)
-    check_wait(s, b, code)
+    if digital and has(b, W_E):
+        return fail_word(s, "Invalid to select both a digital and an analog input with M66", W_E)
     if s.comp_side != SIDE_OFF:
         return fail(s, f"Cannot wait for {'digital' if digital else 'analog'} input with cutter radius compensation on",
                     b.m_at[5])
-    if not digital and not has(b, W_E):
+    if value_or(b, W_P if digital else W_E, MISSING) == MISSING:
         return fail(s, "Need to have either a valid P or a valid E word with M66", b.m_at[5])
     if timeout <= 0.0 and how != 0:
         return fail(s, "Zero timeout with wait type != immediate return", b.m_at[5])
     if not digital and how != 0:
         return fail_word(s, "Can't select analog input with wait type != immediate return", W_L)
+    if how > 4:
+        return fail_word(s, "L word out of range with M66", W_L)
     if not 0.0 <= b.value[W_P if digital else W_E] <= OUTPUTS_MAX:
         return fail_word(s, f"{'Digital' if digital else 'Analog'} input selected out of bounds", W_P if digital else W_E)
     index = <int>floor(b.value[W_P if digital else W_E] + 0.5)
@@ -260,6 +253,8 @@ cdef int program_end(State s, Block* b, int code) except -1:
 
 cdef int user_code(State s, Block* b, int code) except -1:
     """M100 to M199 P Q: a program of the user's"""
+    if not s.canon.user_command_exists(code):
+        return fail(s, f"Unknown m code used: M{code}", b.m_at[10])
     s.canon.user_command(code, value_or(b, W_P, -1.0), value_or(b, W_Q, -1.0))
     s.must_finish = True
     return 0

@@ -50,6 +50,9 @@ cdef int set_units(State s, Block* b, int code) except -1:
     s.comp_x *= factor
     s.comp_y *= factor
     s.comp_z *= factor
+    if s.comp_side != SIDE_OFF:
+        s.comp_radius *= factor
+        s.comp_queue.scale(factor)
     remember_position(s)
     return 0
 

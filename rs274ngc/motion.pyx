@@ -52,7 +52,7 @@ cdef int cancel_motion(State s, Block* b, int code) except -1:
 cdef int straight(State s, Block* b, int code) except -1:
     """G0, G1"""
     cdef double[9] end
-    if s.comp_side != SIDE_OFF and b.g[0] == 530:
+    if s.comp_side != SIDE_OFF and s.comp_radius > 0.0 and b.g[0] == 530:
         return fail(s, "Cannot use g53 with cutter radius comp", b.g_at[0])
     if code == 10:
         if s.feed_mode == 930:
@@ -123,8 +123,9 @@ cdef int arc(State s, Block* b, int code) except -1:
         return fail(s, "Cannot do an arc in planes G17.1, G18.1, or G19.1", b.g_at[G_MOTION_GROUP])
     if s.arc_not_allowed:
         return fail(s, "The move just after exiting cutter compensation mode must be straight, not an arc", b.g_at[G_MOTION_GROUP])
-    check_arc_words(s, b)
+    check_arc_form(s, b)
     need_feed(s, b, "Cannot make arc with zero feed rate", "F word missing with inverse time arc move")
+    check_arc_words(s, b)
     if s.feed_mode == 950 and s.speed[s.active_spindle] == 0.0:
         return fail(s, "Cannot feed with zero spindle speed in feed per rev mode")
     s.motion = code
@@ -145,15 +146,21 @@ cdef int arc(State s, Block* b, int code) except -1:
     return 0
 
 
-cdef int check_arc_words(State s, Block* b) except -1:
-    """Which of R, I, J, K an arc needs and may not have in its plane."""
+cdef int check_arc_form(State s, Block* b) except -1:
+    """An arc has a radius or a centre."""
     cdef bint centre = (b.words & M_IJK) != 0
     cdef bint radius = has(b, W_R)
-    cdef bint ends
     if radius and centre:
         return fail_word(s, "Mixed radius ijk format for arc", W_R)
     if not radius and not centre:
         return fail(s, "R i j k words all missing for arc", b.g_at[G_MOTION_GROUP])
+    return 0
+
+
+cdef int check_arc_words(State s, Block* b) except -1:
+    """Which words an arc needs and may not have in its plane."""
+    cdef bint radius = has(b, W_R)
+    cdef bint ends
     if s.plane == XY:
         if has(b, W_K):
             return fail_word(s, "K word given for arc in xy plane", W_K)
@@ -163,13 +170,13 @@ cdef int check_arc_words(State s, Block* b) except -1:
     elif s.plane == XZ:
         if has(b, W_J):
             return fail_word(s, "J word given for arc in xz plane", W_J)
-        ends = has(b, W_X) or has(b, W_Z)
+        ends = (has(b, W_X) and not b.words & M_POLAR) or has(b, W_Z)
         first, second = W_I, W_K
         missing = "X and z words missing for arc in xz plane"
     else:
         if has(b, W_I):
             return fail_word(s, "I word given for arc in yz plane", W_I)
-        ends = has(b, W_Y) or has(b, W_Z)
+        ends = (has(b, W_Y) and not b.words & M_POLAR) or has(b, W_Z)
         first, second = W_J, W_K
         missing = "Y and z words missing for arc in yz plane"
     if radius:

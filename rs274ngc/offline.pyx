@@ -33,7 +33,7 @@ cdef class OfflineCanon(Canon):
         self.plane = CANON_PLANE_XY
         self.control_mode = CANON_CONTINUOUS
         self.selected = -1
-        self.slot = 1
+        self.slot = 1 if tools else -1
         for k in range(8):
             self.turning[k] = CANON_STOPPED
 

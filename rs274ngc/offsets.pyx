@@ -17,6 +17,7 @@ from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES
 cdef double DEGREE = M_PI / 180.0
+cdef double WHOLE_TOLERANCE = 0.0001       # of P, above a whole number only, and Q
 
 cdef enum:
     G10_TABLE = 0       # modal group 0
@@ -196,6 +197,11 @@ cdef int save_g92(State s) except -1:
 
 # --- G10
 
+cdef int whole_p(const Block* b) noexcept:
+    """The number of a tool."""
+    return <int>floor(b.value[W_P] + 0.5)
+
+
 cdef int check_g10(State s, Block* b, int code) except -1:
     cdef int l = <int>value_or(b, W_L, -1.0)
     cdef double p = value_or(b, W_P, -1.0)
@@ -203,17 +209,15 @@ cdef int check_g10(State s, Block* b, int code) except -1:
         return fail_word(s, "Line with G10 does not have L0, L1, L10, L11, L2, or L20", W_L)
     if l == 0:
         return 0
-    if fabs(p) > 1.0e9:
+    if fabs(p) > 1.0e9 or p - floor(p + 0.5) > WHOLE_TOLERANCE:
         return fail_word(s, "P value not an integer with G10", W_P)
     if l == 2 or l == 20:
-        if <int>p < 0 or <int>p > 9 or not has(b, W_P):
+        if not 0 <= whole_p(b) <= 9 or not has(b, W_P):
             return fail_word(s, f"P value out of range (0-9) with G10 L{l}", W_P)
         if l == 2 and (has(b, W_I) or has(b, W_J)):
             return fail(s, "I J words not allowed with G10 L2", b.g_at[0])
-        if l == 20 and has(b, W_R):
-            return fail_word(s, "R not allowed in G10 L20", W_R)
         return 0
-    if p < 1.0:
+    if whole_p(b) < 1:
         return fail_word(s, f"P value out of range with G10 L{l}", W_P)
     return 0
 
@@ -223,6 +227,8 @@ cdef int set_data(State s, Block* b, int code) except -1:
     cdef int l = <int>b.value[W_L]
     if l == 0:
         return reload_tools(s, b)
+    if l == 20 and has(b, W_R):
+        return fail_word(s, "R not allowed in G10 L20", W_R)
     if l == 2 or l == 20:
         return set_origin(s, b, l)
     return set_tool(s, b, l)
@@ -301,7 +307,7 @@ cdef int set_tool(State s, Block* b, int l) except -1:
     """L1: offsets as given; L10, L11: offsets that give the present position these coordinates"""
     cdef double[9] point
     cdef double value, diameter, front, back
-    cdef int k, number = <int>b.value[W_P], index, orientation
+    cdef int k, number = whole_p(b), index, orientation
     index = find_tool(s, number, b.at[W_P])
     entry = s.canon.get_external_tool_table(index)
     offset = list(entry.offset)
@@ -320,10 +326,13 @@ cdef int set_tool(State s, Block* b, int l) except -1:
     if has(b, W_R):
         diameter = b.value[W_R] * 2.0 / parameter_factor(s, 0)
     front, back = value_or(b, W_I, front), value_or(b, W_J, back)
-    if has(b, W_Q):
-        if l == 1 and (b.value[W_Q] < 0.0 or b.value[W_Q] > 9.0):
+    value = value_or(b, W_Q, MISSING)
+    if value != MISSING:
+        if value > 9.5:
             return fail_word(s, "Invalid tool orientation", W_Q)
-        orientation = <int>value_or(b, W_Q, 0.0)
+        if value < 0.0 or fabs(value - floor(value + 0.5)) > WHOLE_TOLERANCE:
+            return fail_word(s, "Q number in G10 is not an integer", W_Q)
+        orientation = <int>floor(value + 0.5)
     write_tool(s, index, number, offset, diameter, front, back, orientation)
     if index == s.tool_index and index != 0 and not s.random_toolchanger:
         write_tool(s, 0, number, offset, diameter, front, back, orientation)

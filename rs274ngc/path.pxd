@@ -14,6 +14,7 @@ cdef int[7][3] plane_axes   # per plane: first, second and helix axis, as indice
 cdef int[9] axis_words      # the words of the nine axes
 
 cdef int find_end(State s, Block* b, double* end) except -1
+cdef int check_polar(State s, const Block* b) except -1
 cdef int polar_to_xy(State s, Block* b) except -1
 cdef int read_arc(State s, Block* b, int code, const double* end, Arc* a) except -1
 cdef int traverse(State s, const double* end) except -1

@@ -83,30 +83,38 @@ cdef int find_end(State s, Block* b, double* end) except -1:
     return 0
 
 
-cdef int polar_to_xy(State s, Block* b) except -1:
-    """``@`` distance from the origin and ``^`` angle become X and Y words; either may stay as it is."""
-    cdef double x = s.comp_x if s.comp_side != SIDE_OFF else s.pos[0]
-    cdef double y = s.comp_y if s.comp_side != SIDE_OFF else s.pos[1]
-    cdef double distance = hypot(x, y), angle = atan2(y, x) / DEGREE
-    cdef bint incremental = b.g[3] == 910 or (s.incremental and b.g[3] != 900)
+cdef int check_polar(State s, const Block* b) except -1:
+    """``@`` and ``^`` stand for X and Y."""
+    if s.plane != XY:
+        return fail(s, "Cannot use polar coordinate except in G17 plane")
     if has(b, W_X):
         return fail_word(s, "Cannot specify both polar coordinate and X word", W_X)
     if has(b, W_Y):
         return fail_word(s, "Cannot specify both polar coordinate and Y word", W_Y)
-    if s.plane != XY:
-        return fail(s, "Cannot use polar coordinate except in G17 plane")
+    return 0
+
+
+cdef int polar_to_xy(State s, Block* b) except -1:
+    """``@`` distance from the origin and ``^`` angle become X and Y words, never diameters; either may stay as it is."""
+    cdef double x = s.comp_x if s.comp_side != SIDE_OFF else s.pos[0]
+    cdef double y = s.comp_y if s.comp_side != SIDE_OFF else s.pos[1]
+    cdef double distance = hypot(x, y), angle = atan2(y, x) / DEGREE
+    cdef bint at_origin = x == 0.0 and y == 0.0
     if b.g[0] == 530:
         return fail(s, "Cannot use polar coordinates with G53", b.g_at[0])
-    if incremental and x == 0.0 and y == 0.0:
-        return fail(s, "G91 motion with polar coordinates is indeterminate when at the origin")
-    if not incremental and not has(b, W_CARET) and x == 0.0 and y == 0.0:
+    if s.incremental and at_origin:
+        kind = "Incremental" if has(b, W_AT) else "G91"
+        return fail(s, f"{kind} motion with polar coordinates is indeterminate when at the origin")
+    if not s.incremental and not has(b, W_CARET) and at_origin:
         return fail(s, "Must specify angle in polar coordinate if at the origin")
     if has(b, W_AT):
-        distance = b.value[W_AT] + (distance if incremental else 0.0)
+        distance = b.value[W_AT] + (distance if s.incremental else 0.0)
     if has(b, W_CARET):
-        angle = b.value[W_CARET] + (angle if incremental else 0.0)
-    b.value[W_X] = distance * cos(angle * DEGREE) - (x if incremental else 0.0)
-    b.value[W_Y] = distance * sin(angle * DEGREE) - (y if incremental else 0.0)
+        angle = b.value[W_CARET] + (angle if s.incremental else 0.0)
+    b.value[W_X] = distance * cos(angle * DEGREE) - (x if s.incremental else 0.0)
+    b.value[W_Y] = distance * sin(angle * DEGREE) - (y if s.incremental else 0.0)
+    if s.diameter_mode:
+        b.value[W_X] *= 2.0
     b.words |= (1 << W_X) | (1 << W_Y)
     return 0
 
@@ -194,7 +202,7 @@ cdef int need_feed(State s, Block* b, str message, str inverse) except -1:
     if s.feed_mode == 930:
         if not has(b, W_F):
             return fail(s, inverse)
-    elif s.feed_mode == 940 and s.feed == 0.0:
+    elif s.feed == 0.0:
         return fail(s, message)
     return 0
 

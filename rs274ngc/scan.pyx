@@ -5,22 +5,21 @@ stripped text, with plain C values. Expressions and parameters are evaluated on 
 effect when the whole line was read. Errors name the place in the stripped text; the interpreter finds the column from it.
 """
 
-from libc.math cimport acos, asin, atan2, ceil, cosl, exp, fabs, floor, fmod, isinf, isnan, log, pow, sin, sqrt, tanl
+from libc.math cimport acos, asin, atan2, ceil, cosl, exp, fabs, floor, fmod, isinf, isnan, log, pow, sinl, sqrt, tanl
 from libc.stdlib cimport strtod
 from libc.string cimport memcpy, memset, strncmp
 
 from rs274ngc.block cimport *
 from rs274ngc.modal cimport g_code, g_group, m_code, m_group, m_steps, word_step
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named, set_numbered
-from rs274ngc.state cimport State, fail
+from rs274ngc.state cimport PARAMETERS, State, fail
 
 cdef extern from *:
     """
     static const long double LONG_PI = 3.141592653589793238462643383279502884L;
     """
-    const long double LONG_PI       # LinuxCNC's cosine and tangent are extended ones
+    const long double LONG_PI       # LinuxCNC turns degrees to radians and back in extended precision
 
-cdef double DEGREE = 0.017453292519943295
 cdef double INTEGER_TOLERANCE = 0.0001
 cdef double EQUAL_TOLERANCE = 0.000001     # EQ and NE of expressions
 
@@ -371,7 +370,7 @@ cdef int read_function(State s, int* at, double* out, int depth) except -1:
             return fail(s, f"Left bracket missing after {name}", end)
         return fail(s, "Left bracket missing after unary operation name", end)
     if function == F_EXISTS:
-        return read_exists(s, at, out)
+        return read_exists(s, at, out, depth)
     read_expression(s, at, out, depth)
     if function == F_ATAN:
         if s.text[at[0]] != c'/':
@@ -380,9 +379,13 @@ cdef int read_function(State s, int* at, double* out, int depth) except -1:
         if s.text[at[0]] != c'[':
             return fail(s, "Left bracket missing after slash with atan", at[0])
         read_expression(s, at, &other, depth)
-        out[0] = atan2(out[0], other) / DEGREE
+        out[0] = degrees(atan2(out[0], other))
         return 0
     return apply_function(s, function, out, start)
+
+
+cdef inline double degrees(double radians) noexcept:
+    return <double>(radians * 180.0 / LONG_PI)
 
 
 cdef int apply_function(State s, int function, double* x, int at) except -1:
@@ -392,11 +395,11 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
     elif function == F_ACOS:
         if v < -1.0 or v > 1.0:
             return fail(s, "Argument to acos out of range", at)
-        x[0] = acos(v) / DEGREE
+        x[0] = degrees(acos(v))
     elif function == F_ASIN:
         if v < -1.0 or v > 1.0:
             return fail(s, "Argument to asin out of range", at)
-        x[0] = asin(v) / DEGREE
+        x[0] = degrees(asin(v))
     elif function == F_COS:
         x[0] = <double>cosl(v * LONG_PI / 180.0)
     elif function == F_EXP:
@@ -412,7 +415,7 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
     elif function == F_ROUND:
         x[0] = <double>(<long>(v + (-0.5 if v < 0.0 else 0.5))) if fabs(v) < 9e18 else v
     elif function == F_SIN:
-        x[0] = sin(v * DEGREE)
+        x[0] = <double>sinl(v * LONG_PI / 180.0)
     elif function == F_SQRT:
         if v < 0.0:
             return fail(s, "Negative argument to sqrt", at)
@@ -422,16 +425,20 @@ cdef int apply_function(State s, int function, double* x, int at) except -1:
     return 0
 
 
-cdef int read_exists(State s, int* at, double* out) except -1:
-    """``exists[#<name>]``"""
-    if s.text[at[0] + 1] != c'#' or s.text[at[0] + 2] != c'<':
+cdef int read_exists(State s, int* at, double* out, int depth) except -1:
+    """``exists[#<name>]``, ``exists[#5]``"""
+    cdef int number
+    if s.text[at[0] + 1] != c'#':
         return fail(s, "Expected # reading parameter", at[0] + 1)
     at[0] += 2
-    name = read_name(s, at)
+    if s.text[at[0]] == c'<':
+        out[0] = named_exists(s, read_name(s, at))
+    else:
+        read_parameter_number(s, at, &number, depth)
+        out[0] = 0 < number < PARAMETERS - 1
     if s.text[at[0]] != c']':
         return fail(s, "Expected ] reading bracketed parameter", at[0])
     at[0] += 1
-    out[0] = 1.0 if named_exists(s, name) else 0.0
     return 0
 
 
@@ -577,7 +584,7 @@ cdef int read_m(State s, Block* b, int* at, int start) except -1:
         return fail(s, f"M-code greater than 199: M{code}", start)
     else:
         group = m_group[code]
-        if group < 0 or (code >= 100 and not s.canon.user_command_exists(code)):
+        if group < 0:
             return fail(s, f"Unknown m code used: M{code}", start)
         b.steps |= m_code[code].step
     if b.m[group] >= 0:
@@ -602,6 +609,8 @@ cdef int read_word(State s, Block* b, int word, int* at, int start) except -1:
     else:
         read_value(s, at, &value)
     if value < 0.0:
+        if word == W_H and value != MISSING:
+            return fail(s, "Negative h word used", start)
         if word == W_F:
             return fail(s, "Negative f word used", start)
         if word == W_L:

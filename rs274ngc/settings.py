@@ -12,6 +12,9 @@ from rs274ngc.remap import remaps_of
 INCHES_OF = {"inch", "in", "imperial"}
 TRUE = {"1", "yes", "true", "on", "y", "t"}
 
+DEFAULT_FEATURES = 0b1100
+"""INI_VARS and HAL_PIN_VARS."""
+
 
 def number(ini: Any, section: str, key: str, default: float) -> float:
     """A number of the INI file; ConfigError where it is none."""
@@ -61,7 +64,7 @@ def apply_settings(interp: Any, ini: Any) -> None:
     path = ini.find(section, "PARAMETER_FILE")
     if path is not None:
         interp.parameter_file = expanded(base, path)
-    state.features = int(number(ini, section, "FEATURES", number(ini, section, "FEATURE", 12)))
+    state.features = DEFAULT_FEATURES
     for bit, key in enumerate(
         ("RETAIN_G43", "OWORD_NARGS", "INI_VARS", "HAL_PIN_VARS", "NO_DOWNCASE_OWORD", "OWORD_WARNONLY")
     ):

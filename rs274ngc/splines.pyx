@@ -9,7 +9,7 @@ from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_PLANE_XY, CANON_PLANE_XZ, CANON_PLANE_YZ, CANON_SIDE_OFF
-from rs274ngc.path cimport axis_words, find_end, plane_axes
+from rs274ngc.path cimport axis_words, find_end, need_feed, plane_axes
 from rs274ngc.state cimport State, fail, fail_word
 
 cdef int XY = CANON_PLANE_XY, YZ = CANON_PLANE_YZ, XZ = CANON_PLANE_XZ, SIDE_OFF = CANON_SIDE_OFF
@@ -27,8 +27,8 @@ cdef int check_spline(State s, Block* b, double* end) except -1:
     """What every spline needs; ``end``: its end point."""
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot convert spline with cutter radius compensation", b.g_at[1])
-    if s.feed == 0.0:
-        return fail(s, "Cannot make arc with zero feed rate", b.g_at[1])
+    if s.feed_mode != 950:
+        need_feed(s, b, "Cannot make arc with zero feed rate", "F word missing with inverse time arc move")
     if s.plane != XY:
         return fail(s, "Splines must be in the XY plane", b.g_at[1])
     if b.words & NOT_XY:
@@ -70,41 +70,47 @@ cdef int quadratic_spline(State s, Block* b, int code) except -1:
     return send(s, points, 3, end)
 
 
-cdef int nurbs_place(State s, Block* b, double* end, str no_feed) except -1:
-    """What a control point needs; ``end``: where it is. 1: the line has both axes of the plane, 0: none."""
+cdef int nurbs_placed(State s, Block* b) except -1:
+    """1: the line of a control point has both axes of the plane, 0: none."""
     cdef int* axes = plane_axes[s.plane]
     cdef bint first = has(b, axis_words[axes[0]]), second = has(b, axis_words[axes[1]])
     if s.comp_side != SIDE_OFF:
         return fail(s, "Cannot convert spline with cutter radius compensation", b.g_at[1])
-    if s.feed == 0.0:
-        return fail(s, no_feed, b.g_at[1])
     if s.plane not in (XY, YZ, XZ):
         return fail(s, "Splines must be in the XY, YZ or ZX plane", b.g_at[1])
     if first != second:
         return fail(s, NOT_BOTH if s.plane == XY else f"You must specify both {PLANE_NAMES[s.plane]} for Control Points", b.g_at[1])
+    return first
+
+
+cdef int nurbs_place(State s, Block* b, double* end) except -1:
+    """What a control point needs besides; ``end``: where it is."""
+    cdef int* axes = plane_axes[s.plane]
     if b.words & M_AXES & ~(1 << axis_words[axes[0]] | 1 << axis_words[axes[1]]):
         return fail(s, "Splines may not have motion in Z, A, B, or C" if s.plane == XY else
                        "Splines may not have motion outside their plane", b.g_at[1])
     if s.nurbs_points is not None and len(s.nurbs_points) >= POINTS_MAX:
         return fail(s, "Too many control points", b.g_at[1])
-    find_end(s, b, end)
-    return first
+    if s.feed == 0.0 and s.feed_mode == 940:
+        return fail(s, "Cannot make a NURBS with 0 feedrate", b.g_at[1])
+    return find_end(s, b, end)
 
 
 cdef int nurbs_point(State s, Block* b, int code) except -1:
     """G5.2 X Y P weight, L order: a control point; the first line may give only the weight of the start"""
     cdef double[9] end
     cdef int* axes = plane_axes[s.plane]
-    cdef bint first = s.motion != code, placed = nurbs_place(s, b, end, "Cannot make a NURBS with 0 feedrate")
+    cdef bint first = s.motion != code, placed = nurbs_placed(s, b)
     if (not first or s.nurbs_active) and value_or(b, W_P, 0.0) <= 0.0:      # also after a curve that was not ended
         return fail(s, "Must specify positive weight P for every Control Point", b.g_at[1])
+    if not first and not placed:
+        return fail_word(s, "Can specify P without X and Y only for the first control point", W_P)
+    nurbs_place(s, b, end)
     if first:
         s.nurbs_order = value_or(b, W_L, NURBS_ORDER)
         s.nurbs_points = [(s.pos[axes[0]], s.pos[axes[1]], value_or(b, W_P, 1.0))]
     if placed:
         s.nurbs_points.append((end[axes[0]], end[axes[1]], value_or(b, W_P, 1.0)))
-    elif not first:
-        return fail_word(s, "Can specify P without X and Y only for the first control point", W_P)
     s.motion = code
     s.nurbs_active = True
     return 0
@@ -137,8 +143,9 @@ cdef int nurbs_knot(State s, Block* b, int code) except -1:
     """G6.2 X Y R weight K knot, in the first line P order: a control point and a knot; lines of a knot alone end the curve"""
     cdef double[9] end
     cdef int* axes = plane_axes[s.plane]
-    cdef bint placed = nurbs_place(s, b, end, "Cannot make a NURBS with 0 feedrate")
+    cdef bint placed = nurbs_placed(s, b)
     cdef int order
+    nurbs_place(s, b, end)
     if not has(b, W_K):
         return fail(s, "K word (knot) missing with G6.2", b.g_at[1])
     if s.motion != code:

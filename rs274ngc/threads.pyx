@@ -94,7 +94,7 @@ ctypedef struct Thread:
 
 cdef int check_g76(State s, Block* b, int code) except -1:
     """Words that G76 cannot do without."""
-    if not has(b, W_P):
+    if value_or(b, W_P, MISSING) == MISSING:
         return fail(s, "P word missing with G76", b.g_at[1])
     if not (has(b, W_I) and has(b, W_J) and has(b, W_K)):
         return fail(s, "I J or K words missing with G76", b.g_at[1])
@@ -168,7 +168,7 @@ cdef int threading_cycle(State s, Block* b, int code) except -1:
     t.outward = 1 if t.peak > 0.0 else -1
     t.direction = 1 if t.end > t.z else -1
     t.pitch, t.taper, t.tapers = b.value[W_P], value_or(b, W_E, 0.0), <int>value_or(b, W_L, 0.0) & 3
-    t.slope = tan(value_or(b, W_Q, 0.0) * M_PI / 180.0)
+    t.slope = tan(value_or(b, W_Q, MISSING) * M_PI / 180.0) if value_or(b, W_Q, MISSING) != MISSING else 0.0
     if t.taper <= 0.0:
         t.taper, t.tapers, t.taper_pitch = 0.0, 0, t.pitch
     else:

@@ -92,6 +92,8 @@ cdef int declare_tool(State s, Block* b, int code) except -1:
     """M61 Q: this tool is in the spindle"""
     cdef double number = value_or(b, W_Q, -1.0)
     cdef int index
+    if s.comp_side != SIDE_OFF:
+        return fail(s, "Cannot change tools with cutter radius compensation on", b.m_at[6])
     if number < 0.0:
         return fail(s, "Need non-negative Q-word to specify tool number with M61", b.m_at[6])
     if number > 2.0e9:

@@ -276,6 +276,106 @@ AWKWARD = {
         g10 l1 p1 x3
         g1 x9
         m62 p1""",
+    "polar words in diameters": """\
+        g7
+        g0 @4 ^30
+        @5
+        g91 @1
+        ^5
+        g90 g7 ^55
+        g81 @5 ^3 z-1 r1
+        g91 g81 ^20 z-1 r1 l3""",
+    "polar words where the line changes the plane": """\
+        g0 x1 y1
+        s5 g18 g0 @1 ^3
+        g2 @1 ^3 r5""",
+    "the last digit of functions": """\
+        #1=[asin[sin[tan[atan[1.356]/[0]]]]]
+        (debug,#1)
+        #1=[[acos[.3456789]+atan[.123]/[.456]]*1000000000000]
+        (debug,#1)
+        #1=[[sin[-5.123]+cos[77.7]+tan[8.9]]*1000000000000]
+        (debug,#1)""",
+    "numbered parameters in EXISTS": """\
+        #1=[exists[#1]+exists[#200]*10+exists[#9999]*100+exists[##2]*1000]
+        (debug,#1)
+        #1=exists[#1+#2]""",
+    "what a definition and a return leave in #<_value>": """\
+        o<a> sub
+          (print,in a #<_value> #<_value_returned>)
+        o<a> endsub [#1+4]
+        (print,defined a #<_value> #<_value_returned>)
+        o<a> call [7]
+        o<a> call
+        (print,called a #<_value> #<_value_returned>)
+        m98 p9
+        (print,called 9 #<_value> #<_value_returned>)
+        o<b> sub
+        o<b> endsub [#<only_in_a_call>]
+        m2
+        o9
+        (print,in 9 #<_value> #<_value_returned>)
+        m99""",
+    "words that count as not written": """\
+        m3 s100
+        g82 x1 z-1 r1 p1
+        x2 p-1
+        g83 x1 z-1 r1 q1
+        x2 q-1
+        g80
+        g76 z-1 p1 i-1 j.1 k.5 q-1
+        g10 l1 p1 q-1
+        x2 m66 p-1 l0""",
+    "a peck of nothing": """\
+        g83 x1 z-1 r1 q1
+        x2 q0""",
+    "numbers that are nearly whole": """\
+        g10 l1 p1.6 x1
+        g10 l2 p1.6 x1
+        g10 l11 p.6 q2.00005 z1
+        (debug,#5221 #5241)
+        g10 l1 p1 q2.001""",
+    "a control point without a weight": """\
+        g17 g5.2 x1 y1 p1
+        z1""",
+    "an arc in a wrong plane without a feed": """\
+        g94
+        g2 z1 i1 k1""",
+    "an arc without a feed per turn": """\
+        g95
+        g2 x1 r1""",
+    "a user's code that is not there": """\
+        m100 f1 s5""",
+    "a lathe cycle without its words": """\
+        g18
+        s5 g71""",
+    "a line that is too long, met by a search": "m98 p9\ng1 x1 (" + "c" * 246 + ")\no9\nm99",
+    "the unit of length while a compensated move is held back": """\
+        g41.1 d.1
+        g1 x5
+        g20
+        g1 x1
+        g1 y5
+        g21
+        g1 x60
+        g40""",
+    "an unused word beside G96 without S": "g96 i2",
+    "machine coordinates beside a tool of no width": """\
+        g41.1 d0
+        g1 x5
+        g53 g1 x1""",
+    "compensation on and off without a move": """\
+        g41.1 d.1
+        g40
+        g2 x1 i.5""",
+    "a spline without a feed per turn": """\
+        g95
+        g5.1 x1 y1 i1 j2""",
+    "words that some codes do not mind": """\
+        m3 s100
+        g33 z1 k1 e1
+        g33.1 z2 k1 e1
+        g42.1 d1 r2""",
     "orienting a spindle that turns": """\
         m3 s100
         m19 r10
