@@ -23,14 +23,14 @@ with hal.component("panel") as c:
     print(heard, c["speed"], pin.get_name(), pin.type == hal.HAL_FLOAT, pin.dir == hal.HAL_OUT)
     print(isinstance(pin, hal.Pin), lamp.is_pin(), lamp.get(), _hal.component is hal.component)
 """
-FOUND = Path("/usr/lib/python3/dist-packages/hal_glib.py").exists() and len(_packages()) > 1
+DEBIAN = Path("/usr/lib/python3/dist-packages")
+FOUND = (DEBIAN / "hal_glib.py").exists() and (DEBIAN / "gi").exists() and len(_packages()) > 1
 
 
 @pytest.mark.peer
 @pytest.mark.skipif(not FOUND, reason="Debian's hal_glib, or a Python of its version, is not installed")
 def test_a_glib_pin_is_a_pin_of_ours_and_tells_its_changes():
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_packages())}
-    done = subprocess.run(
-        [SYSTEM_PYTHON, "-c", SCRIPT], env=environment, cwd="/", capture_output=True, text=True, timeout=120, check=False
-    )
+    command = [SYSTEM_PYTHON, "-c", SCRIPT]
+    done = subprocess.run(command, env=environment, cwd="/", capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.splitlines() == ["[2.5, 4.0] 4.0 speed True True", "True True False True"], done.stderr
