@@ -14,6 +14,13 @@ VERSION_MAJOR, VERSION_MINOR = 2.10, 0.0
 PLANE_CODES = {1: 170, 2: 190, 3: 180, 4: 171, 5: 191, 6: 181}
 COORD_SYSTEM_CODES = (0, 540, 550, 560, 570, 580, 590, 591, 592, 593)
 
+
+def metric_machine(state: Any) -> float:
+    """1: a machine unit is a millimetre; 0: an inch; -1: neither."""
+    units = state.canon.get_external_length_units()
+    return 1.0 if units == 1.0 else 0.0 if units == 1.0 / 25.4 else -1.0
+
+
 ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
     ("_vmajor", "version of the control, major and minor", lambda s: VERSION_MAJOR),
     ("_vminor", "version of the control, patch level", lambda s: VERSION_MINOR),
@@ -23,6 +30,7 @@ ROWS: tuple[tuple[str, str, Callable[[Any], float]], ...] = (
     ("_ccomp", "cutter compensation code times 10", lambda s: {1: 420, 2: 410, 3: 400}[s.comp_side]),
     ("_metric", "1 with G21", lambda s: s.units != CANON_UNITS_INCHES),
     ("_imperial", "1 with G20", lambda s: s.units == CANON_UNITS_INCHES),
+    ("_metric_machine", "1 on a machine in mm, 0 on one in inches, else -1", metric_machine),
     ("_absolute", "1 with G90", lambda s: not s.incremental),
     ("_incremental", "1 with G91", lambda s: s.incremental),
     ("_inverse_time", "1 with G93", lambda s: s.feed_mode == 930),
