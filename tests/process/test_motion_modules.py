@@ -106,11 +106,12 @@ def test_the_modules_of_the_ini_file_plan_and_home(tmp_path: Path, built: dict[s
         run.port()
         desk = Desk(tmp_path)
         desk.ready(linuxcnc.MODE_MDI)
-        desk.command.mdi("G0 X2")
+        desk.command.mdi("G0 X6")
         fastest = 0.0
-        while desk.command.wait_complete(0.01) != DONE:
+        while (result := desk.command.wait_complete(0.01)) == -1:
             fastest = max(fastest, desk.look().current_vel)
-        assert desk.look().position[0] == pytest.approx(2.0)
+        assert result == DONE, desk.texts
+        assert desk.look().position[0] == pytest.approx(6.0)
         assert 0.0 < fastest <= CREEP * 1.001
         command = [sys.executable, "-m", "hal.halcmd", "show", "comp"]
         shown = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
