@@ -15,7 +15,7 @@ from emcmot.tp.geometry cimport position
 from emcmot.tp.jerk cimport forget_stretches, move_smoothly
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
 from emcmot.tp.model cimport AXES, CHAIN_NONE, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, extend, refresh, sweep_caps
+from emcmot.tp.path cimport exit_limit, extend, refresh_some, sweep_caps
 from emcmot.tp.progress cimport holding, next_span, reached, run_tap, target_w, waiting
 from emcmot.tp.reverse cimport turn_forward
 from emcmot.tp.smooth cimport command_planned, command_smoothed
@@ -26,7 +26,8 @@ cdef enum:
     PHASES_PER_PERIOD = 5000    # bound of the work of one period
     SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
     REFRESH_SHARE = 16           # longer ones: when this share of the path is new
-    FRESH_SPANS = 256            # so many are looked at without need, lest need finds more than a period can bear
+    FRESH_SPANS = 256            # so many are looked at without need
+    LOOKED_AT_PER_PERIOD = 160   # spans
 
 cdef double SAME_SPEED = 1e-12   # relative
 cdef double STANDING = 1e-24     # w below which braking has come to rest: the rest is rounding
@@ -54,6 +55,7 @@ cdef void advance(TpState* tp) noexcept nogil:
     for i in range(AXES):
         before[i] = tp.pos[i]
     tp.lead_known = 0
+    tp.look_left = LOOKED_AT_PER_PERIOD
     if not tp.reversing:
         extend(tp)
     if tp.smooth:
@@ -85,6 +87,7 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
     tp.seg_head = tp.seg_built = tp.seg_tail
     tp.active = tp.settled = tp.new_spans = tp.history = tp.span_tail
     tp.corner_known = 0
+    tp.looking = -1
     tp.body_end = tp.body_goal = 0.0
     tp.aborting = tp.paused = tp.stepping = 0
     tp.chain = CHAIN_NONE
@@ -117,12 +120,12 @@ cdef void _place(TpState* tp) noexcept nogil:
 cdef void _look_ahead(TpState* tp) noexcept nogil:
     """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it.
 
-    A path that is known far ahead asks for nothing, and grows; it is refreshed in pieces.
+    A path that is known far ahead asks for nothing, and grows; it is refreshed in pieces that a period can bear.
     """
     cdef int64_t fresh = tp.span_tail - tp.new_spans, known = tp.span_tail - tp.active
     cdef int wanted = tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known)
-    if fresh >= FRESH_SPANS or (fresh > 0 and wanted):
-        refresh(tp)
+    if tp.looking >= 0 or fresh >= FRESH_SPANS or (fresh > 0 and wanted):
+        refresh_some(tp)
 
 
 cdef void _move(TpState* tp, double left) noexcept nogil:

@@ -33,24 +33,24 @@ cdef inline int _joints(const TpState* tp, const Curve* curve, double u, double*
 
 
 cdef int _rates(const TpState* tp, const Curve* curve, double u, Rates* rates) noexcept nogil:
-    """Derivatives at u; 0 where the kinematics has no solution. Next to an end of the curve: those of the nearest place."""
+    """Derivatives at u; 0 where the kinematics has no solution. Next to an end of the curve the second is that of near by."""
     cdef double before[TP_JOINTS]
     cdef double here[TP_JOINTS]
     cdef double after[TP_JOINTS]
     cdef double step = fmin(STEP, SHARE_OF_CURVE * curve.length)
+    cdef double at = fmax(step, fmin(curve.length - step, u))
     cdef int k
-    u = fmax(step, fmin(curve.length - step, u))
     for k in range(TP_JOINTS):
         before[k] = here[k] = after[k] = 0.0
-    if _joints(tp, curve, u, here):
+    if _joints(tp, curve, at, here):
         return 0
     for k in range(TP_JOINTS):
         before[k] = after[k] = here[k]
-    if _joints(tp, curve, u - step, before) or _joints(tp, curve, u + step, after):
+    if _joints(tp, curve, at - step, before) or _joints(tp, curve, at + step, after):
         return 0
     for k in range(tp.joints):
-        rates.first[k] = 0.5 * (after[k] - before[k]) / step
         rates.second[k] = (after[k] - 2.0 * here[k] + before[k]) / (step * step)
+        rates.first[k] = 0.5 * (after[k] - before[k]) / step + (u - at) * rates.second[k]
     return 1
 
 

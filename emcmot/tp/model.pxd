@@ -152,6 +152,10 @@ ctypedef struct TpState:
     int corner_known         # the corner at the end of that segment is decided
     int64_t settled          # spans before this one have their final beta
     int64_t new_spans        # first span added or changed since the last backward pass
+    int64_t looking          # cursor of a look-ahead that goes on from period to period; -1: none
+    int64_t looking_new      # spans from this one on are new in it
+    int64_t looking_settled  # newest span that is settled, as far as it has come; -1: none
+    int look_left            # spans that may still be looked at in this period
     int64_t sweep            # cursor of the recomputation after a change of feed caps
     int caps_changed
 

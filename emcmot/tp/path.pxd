@@ -6,6 +6,8 @@ from emcmot.tp.model cimport Segment, TpState
 
 cdef void extend(TpState* tp) noexcept nogil
 cdef void refresh(TpState* tp) noexcept nogil
+cdef void refresh_some(TpState* tp) noexcept nogil
+cdef void stop_looking(TpState* tp) noexcept nogil
 cdef int body_left(const TpState* tp) noexcept nogil
 cdef void sweep_caps(TpState* tp) noexcept nogil
 cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil

@@ -4,6 +4,8 @@
 `refresh` is the look-ahead: going back from the end of the built path, where the machine must be able to stop, it finds
 for each span the largest w (`beta`) from which all that follows can be kept. A span whose answer does not depend on what
 follows (`settled`) shields those before it, so each span is visited about twice, however far the machine looks ahead.
+`refresh_some` does the same in the pieces that a period can bear: new path only raises what is safe, so what was found
+before holds until the piece that is due gets there.
 """
 
 from libc.math cimport INFINITY, ceil, fabs, fmax, fmin
@@ -85,26 +87,74 @@ cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil:
 
 
 cdef void refresh(TpState* tp) noexcept nogil:
-    """Recompute beta from the end of the path back to where nothing changes."""
+    """Recompute beta from the end of the path back to where nothing changes, all at once."""
+    stop_looking(tp)
+    _begin_looking(tp)
+    _look_back(tp, tp.active)
+
+
+cdef void refresh_some(TpState* tp) noexcept nogil:
+    """The same, no further than what is left of this period's share of work; the next periods go on."""
+    if tp.look_left <= 0:
+        return
+    tp.looking = min(tp.looking, tp.span_tail - 1)
+    if tp.looking < 0:
+        _begin_looking(tp)
+    _look_back(tp, max(tp.active, tp.looking - tp.look_left))
+
+
+cdef void stop_looking(TpState* tp) noexcept nogil:
+    """Give up a look-ahead that is not done; the next one goes at least as far."""
+    if tp.looking > tp.active:
+        tp.new_spans = min(tp.new_spans, tp.looking + 1)
+    tp.looking = -1
+
+
+cdef void _begin_looking(TpState* tp) noexcept nogil:
+    tp.looking = tp.span_tail - 1
+    tp.looking_new = tp.new_spans
+    tp.looking_settled = -1
+    tp.new_spans = tp.span_tail
+
+
+cdef void _look_back(TpState* tp, int64_t stop) noexcept nogil:
+    """Take the look-ahead back to the span after `stop`; its cursor becomes -1 where it is done."""
+    cdef int shielded, unchanged = 0
+    cdef double beta
+    cdef Span* span
+    while tp.looking > stop:
+        span = _span(tp, tp.looking)
+        beta = entry_limit(span, tp.amax, feed_cap(tp, tp.looking), exit_limit(tp, tp.looking), &shielded)
+        tp.look_left -= 1
+        unchanged = tp.looking < tp.looking_new and beta == span.beta
+        if unchanged:
+            break
+        span.beta = beta
+        if shielded and tp.looking_settled < 0:
+            tp.looking_settled = tp.looking
+        tp.looking -= 1
+    if not unchanged and tp.looking > tp.active:
+        return
+    if tp.looking_settled >= 0:
+        tp.settled = tp.looking_settled + 1
+    elif tp.looking > tp.settled:
+        tp.settled = tp.looking
+    tp.looking = -1
+
+
+cdef void _lower(TpState* tp) noexcept nogil:
+    """The end of the path was changed: lower what it no longer bears; what may rise is left to the look-ahead."""
     cdef int64_t index = tp.span_tail - 1
-    cdef int64_t settled = -1
     cdef int shielded
     cdef double beta
     cdef Span* span
     while index > tp.active:
         span = _span(tp, index)
         beta = entry_limit(span, tp.amax, feed_cap(tp, index), exit_limit(tp, index), &shielded)
-        if index < tp.new_spans and beta == span.beta:
-            break
+        if index < tp.new_spans and beta >= span.beta:
+            return
         span.beta = beta
-        if shielded and settled < 0:
-            settled = index
         index -= 1
-    if settled >= 0:
-        tp.settled = settled + 1
-    elif index > tp.settled:
-        tp.settled = index
-    tp.new_spans = tp.span_tail
 
 
 cdef void sweep_caps(TpState* tp) noexcept nogil:
@@ -226,7 +276,7 @@ cdef void _reopen(TpState* tp, int64_t last) noexcept nogil:
     _start_segment(tp, last + 1)
     if body_left(tp):
         _add_body(tp, last + 1)
-    refresh(tp)
+    _lower(tp)
     if _active_fits(tp):
         return
     while tp.span_tail > tp.active + 1 and _span(tp, tp.span_tail - 1).seg == last + 1:

@@ -13,7 +13,7 @@ from libc.stdint cimport int64_t
 from emcmot.tp.jerk cimport forget_stretches
 from emcmot.tp.limits cimport entry_limit
 from emcmot.tp.model cimport BACK_RING, SPAN_BLEND, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, feed_cap, refresh
+from emcmot.tp.path cimport exit_limit, feed_cap, refresh, stop_looking
 from emcmot.tp.tp cimport TP_TAP
 
 cdef enum:
@@ -38,6 +38,7 @@ cdef int turn_back(TpState* tp) noexcept nogil:
         return 0
     for k in range(count):
         _mirror(tp, newest - k, &tp.back_spans[k], k == count - 1)
+    stop_looking(tp)
     tp.ahead_spans = tp.spans
     tp.ahead_mask = tp.span_mask
     tp.ahead_active = tp.active

@@ -79,7 +79,7 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
         s.vmax[i] = s.amax[i] = s.jmax[i] = INFINITY
     s.window = 1
     s.feed_scale = s.rapid_scale = s.adaptive_scale = 1.0
-    s.sweep = s.held_span = -1
+    s.sweep = s.held_span = s.looking = -1
     return <Tp*>s
 
 

@@ -36,6 +36,13 @@ def test_a_program_runs_through_within_the_joints_limits(module, seed):
     assert m.worst_acc <= 1.0 + ROUNDING
 
 
+@pytest.mark.parametrize("seed", [186, 285, 290])
+def test_short_blends_keep_the_limits_of_belts(seed):
+    m = run(corexykins, seed)
+    assert m.errors() == []
+    assert m.worst_acc <= 1.0 + ROUNDING
+
+
 @pytest.mark.parametrize("module", MODULES)
 def test_some_joint_is_used_fully(module):
     worst = max(max(m.worst_vel, m.worst_acc) for m in (run(module, seed) for seed in range(3)))

@@ -323,3 +323,17 @@ def test_a_program_that_ends_with_an_arc_comes_to_its_end(radius):
     positions = program.planner.run_to_end(10.0)
     assert program.planner.status()["done"]
     program.check(positions, 0.02)
+
+
+def test_a_short_queue_of_tiny_moves_that_is_refilled_keeps_the_limits():
+    program, count, parts = Program(), 3000, []
+    program.planner = Planner(DT, 300)
+    for axis in range(9):
+        program.planner.set_limits(axis, VMAX[axis], AMAX[axis])
+    while len(program.path) < count or not program.planner.status()["done"]:
+        for _ in range(min(program.planner.status()["free"], count - len(program.path))):
+            angle = 2e-4 * (len(program.path) + 1)
+            program.line(100 * math.cos(angle) - 100, 100 * math.sin(angle), 0, vel=80.0, tolerance=0.0005)
+        parts.append(program.planner.step(20))
+    report = program.check(np.concatenate(parts), 0.0005, stride=9)
+    assert report.seconds < 1.6 * count * 0.02 / 80.0
