@@ -64,7 +64,7 @@ def test_an_interrupted_build_is_told_and_done_again_from_the_beginning(
 ) -> None:
     (checkout / "slow").touch()
     first = prepare(checkout)
-    wait_until((checkout / "built").exists, "the build")
+    wait_until(lambda: (checkout / "built").exists() and built(checkout), "the build")
     os.killpg(first.pid, number)
     output, errors = first.communicate()
     assert (first.returncode, output) == (code, "")
