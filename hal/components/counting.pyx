@@ -240,3 +240,19 @@ declare("charge_pump", "Square waves for a charge pump", sizeof(ChargePump), [
     pin_out(BIT, "out", "changes each period"), pin_out(BIT, "out-2", "half as fast"), pin_out(BIT, "out-4", "a quarter as fast"),
     pin_in(BIT, "enable", "false: all outputs are", True),
 ], {"": <size_t>&charge_pump}, uses_fp=False, default_count=1, most=1, instance="charge-pump")
+
+
+# ---- threadtest ----
+
+cdef struct ThreadTest:
+    hal_pin count
+
+cdef void threadtest_increment(ThreadTest* s, long period) noexcept nogil:
+    at(s.count).u += 1
+
+cdef void threadtest_reset(ThreadTest* s, long period) noexcept nogil:
+    at(s.count).u = 0
+
+declare("threadtest", "Counts how often one thread runs between two runs of another", sizeof(ThreadTest), [
+    pin_out(U32, "count", "of increment since the last reset"),
+], {"increment": <size_t>&threadtest_increment, "reset": <size_t>&threadtest_reset}, uses_fp=False)

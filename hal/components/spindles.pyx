@@ -1,4 +1,4 @@
-"""Components for spindles and torches: spindle, spindle_monitor, thc, thcud. See ``declare.py``."""
+"""Components for spindles and torches: spindle, spindle_monitor, thc, thcud, ohmic. See ``declare.py``."""
 
 from libc.math cimport fabs
 from libc.stdint cimport uint8_t, uint32_t
@@ -204,3 +204,35 @@ declare("thcud", "Height of a plasma torch by an up and a down signal", sizeof(T
     param_rw(FLOAT, "velocity-tol", "percent that the torch may be slower and still correct"),
     param_rw(FLOAT, "correction-vel", "units of Z in a period"),
 ], {"": <size_t>&thcud}, most=1, takes_names=False, instance="thcud")
+
+
+# ---- ohmic ----
+
+cdef struct Ohmic:
+    hal_pin thcad_0_volt_freq, thcad_max_volt_freq, thcad_divide, thcad_fullscale, velocity_in, volt_divider
+    hal_pin ohmic_threshold, ohmic_low, arc_on, thcad_volts, ohmic_volts, ohmic_on, is_probing
+
+cdef void ohmic(Ohmic* s, long period) noexcept nogil:
+    cdef double span = at(s.thcad_max_volt_freq).f - at(s.thcad_0_volt_freq).f
+    cdef double share = 0.0
+    if span != 0.0:
+        share = (at(s.velocity_in).f * at(s.thcad_divide).f - at(s.thcad_0_volt_freq).f) / span
+    at(s.thcad_volts).f = share * at(s.thcad_fullscale).f
+    at(s.ohmic_volts).f = at(s.thcad_volts).f * at(s.volt_divider).f
+    at(s.arc_on).b = at(s.thcad_volts).f >= at(s.thcad_fullscale).f
+    if at(s.is_probing).b and at(s.ohmic_volts).f >= at(s.ohmic_threshold).f:
+        at(s.ohmic_on).b = 1
+    elif at(s.is_probing).b and at(s.ohmic_volts).f <= at(s.ohmic_low).f:
+        at(s.ohmic_on).b = 0
+
+declare("ohmic", "Contact of a torch with the sheet, by the voltage that a THCAD card measures", sizeof(Ohmic), [
+    pin_in(FLOAT, "thcad-0-volt-freq", "of the card at 0 V, Hz"),
+    pin_in(FLOAT, "thcad-max-volt-freq", "at its full scale, Hz"),
+    pin_in(FLOAT, "thcad-divide", "1, 32, 64 or 128, as its links say", 32.0),
+    pin_in(FLOAT, "thcad-fullscale", "5, 10 or 300 V", 5.0),
+    pin_in(FLOAT, "velocity-in", "of the encoder that counts it, Hz"),
+    pin_in(FLOAT, "volt-divider", "before the card", 4.9), pin_in(FLOAT, "ohmic-threshold", "contact from here on, V", 18.0),
+    pin_in(FLOAT, "ohmic-low", "no contact down from here, V", 5.0), pin_out(BIT, "arc-on", "full scale is reached"),
+    pin_out(FLOAT, "thcad-volts", "at the card"), pin_out(FLOAT, "ohmic-volts", "before the divider"),
+    pin_out(BIT, "ohmic-on", "contact"), pin_in(BIT, "is-probing", "contact is looked at"),
+], {"": <size_t>&ohmic})

@@ -191,3 +191,26 @@ def test_a_gantry_holds_the_joint_whose_switch_closes_first(component: Callable[
         (0.0, 0.0, False, False), (-1.0, -1.0, False, False), (-1.0, -2.0, False, True), (-1.0, -3.0, False, True),
         (-2.0, -4.0, True, True), (-1.0, -3.0, True, True), (0.0, -2.0, False, False),
     ]  # fmt: skip
+
+
+def test_ohmic_sees_contact_between_two_voltages_while_probing(component: Load) -> None:
+    bench = component("ohmic")
+    bench.set(thcad_0_volt_freq=100000.0, thcad_max_volt_freq=900000.0, thcad_divide=32.0, is_probing=True)
+    seen = []
+    for volts in (0.0, 17.0, 19.0, 6.0, 4.9):
+        bench.set(velocity_in=(100000.0 + 800000.0 * volts / (5.0 * 4.9)) / 32.0)
+        bench.run("ohmic.0")
+        assert bench.get("ohmic_volts") == pytest.approx(volts)
+        seen.append(bench.get("ohmic_on"))
+    assert seen == [False, False, True, True, False]
+    bench.set(is_probing=False, velocity_in=900000.0 / 32.0)
+    bench.run("ohmic.0")
+    assert (bench.get("arc_on"), bench.get("ohmic_on")) == (True, False)
+
+
+def test_threadtest_counts_between_resets(component: Load) -> None:
+    bench = component("threadtest")
+    bench.run("threadtest.0.increment", 7)
+    assert bench.get("count") == 7
+    bench.run("threadtest.0.reset")
+    assert bench.get("count") == 0
