@@ -75,7 +75,7 @@ class Changer:
         index = self.prepared
         if index == NONE_PREPARED:
             raise ValueError("no tool is prepared; a T word must come before M6")
-        same = index > 0 and self.store.entries[index].toolno == self.store.entries[0].toolno
+        same = index > 0 and self.store.entries[index].toolno == self.store.in_spindle
         if (self.store.random and index == 0) or (not self.store.random and same):
             return
         self._target = index

@@ -24,6 +24,8 @@ class ToolStore:
         self.random = random
         self.entries = self._empty()
         self.entries[0] = Tool(pocketno=NO_POCKET)
+        self._held = 0
+        """Number of the tool in a nonrandom spindle: EMC_TOOL_SET_OFFSET may write what it likes into entry 0."""
         self.last_index = 0
 
     def _empty(self) -> list[Tool]:
@@ -32,6 +34,7 @@ class ToolStore:
     def empty_spindle(self) -> None:
         """The tool was taken out of a nonrandom spindle."""
         self.entries[0] = Tool(toolno=0)
+        self._held = 0
 
     def load(self, tools: Iterable[Tool], file: ToolFile | None = None) -> list[str]:
         """Take over what the file or the data base lists; the tool in a nonrandom spindle gets its new values.
@@ -54,8 +57,7 @@ class ToolStore:
             taken[index] = tool.toolno
         self.entries = entries
         self.last_index = max(taken, default=0)
-        in_spindle = self.entries[0].toolno
-        home = self.index_of(in_spindle) if not self.random and in_spindle > 0 else -1
+        home = self.index_of(self._held) if not self.random else -1
         if home > 0:
             self._copy_to_spindle(home)
         return remarks
@@ -76,7 +78,7 @@ class ToolStore:
     @property
     def in_spindle(self) -> int:
         """Number of the tool in the spindle; none is 0, on a random changer, where 0 is a tool, -1."""
-        return self.entries[0].toolno if self.random else max(self.entries[0].toolno, 0)
+        return self.entries[0].toolno if self.random else self._held
 
     def index_of(self, toolno: int) -> int:
         """Index of a tool; -1: not in the table. The empty spindle of a nonrandom changer is index 0."""
@@ -108,13 +110,14 @@ class ToolStore:
 
     def _copy_to_spindle(self, index: int) -> None:
         self.entries[0] = self.entries[index].copy()
+        self._held = self.entries[0].toolno
 
     def write(self, index: int, tool: Tool) -> None:
         """G10 L1, L10, L11: new values for entry ``index``; the copy in a nonrandom spindle follows."""
         entry = self.entries[index]
         tool.pocketno, tool.remark = entry.pocketno, entry.remark
         self.entries[index] = tool
-        if not self.random and index and tool.toolno == self.entries[0].toolno:
+        if not self.random and index and tool.toolno == self._held:
             self._copy_to_spindle(index)
 
     def listed(self) -> list[Tool]:

@@ -27,12 +27,27 @@ MANUAL = frozenset({Mode.MANUAL})
 TYPED = frozenset({Mode.MDI, Mode.MANUAL})
 AUTO = frozenset({Mode.AUTO})
 ANY = frozenset(Mode)
+NEVER: frozenset[Mode] = frozenset()
 
 MODE_NAMES = {Mode.MANUAL: "manual", Mode.MDI: "MDI", Mode.AUTO: "auto"}
 
 
 class Refused(Exception):
     """A command cannot be carried out; the text says why, for the operator."""
+
+
+class PassedOver(Refused):
+    """Refused, too, but LinuxCNC calls it done: motion refuses it there, or nobody, and the status shows no error."""
+
+
+def error(mode: Mode) -> type[Refused]:
+    """Refused as an error, in whatever mode."""
+    return Refused
+
+
+def passed_over(mode: Mode) -> type[Refused]:
+    """Passed over in whatever mode."""
+    return PassedOver
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +59,8 @@ class Rule:
     modes: frozenset[Mode]
     idle: bool
     urgent: Callable[[Any], bool]
+    refusal: Callable[[Mode], type[Refused]] = error
+    """How it is refused for the mode."""
 
 
 RULES: dict[int, Rule] = {}
@@ -66,12 +83,16 @@ def command(
     modes: frozenset[Mode] = ANY,
     idle: bool = False,
     urgent: Callable[[Any], bool] = never,
+    refusal: Callable[[Mode], type[Refused]] = error,
 ) -> Callable[[Handler], Handler]:
-    """Register a handler. ``on``: only while the machine is on; ``idle``: only while no program or MDI line runs."""
+    """Register a handler. ``on``: only while the machine is on; ``idle``: only while no program or MDI line runs.
+
+    ``refusal``: how it is refused in a mode that it is not for.
+    """
 
     def register(handler: Handler) -> Handler:
         for message in types:
-            RULES[message.TYPE_ID] = Rule(handler, on, modes, idle, urgent)
+            RULES[message.TYPE_ID] = Rule(handler, on, modes, idle, urgent, refusal)
         return handler
 
     return register
@@ -91,5 +112,5 @@ def check(rule: Rule, message: Message, state: State, mode: Mode, interp: Interp
     if mode in rule.modes and (interp is Interp.IDLE or not rule.idle):
         return
     if mode is Mode.AUTO:
-        raise Refused(f"can't do that ({name}) in auto mode with the interpreter {interp.name.lower()}")
-    raise Refused(f"can't do that ({name}:{message.TYPE_ID}) in {MODE_NAMES[mode]} mode")
+        raise rule.refusal(mode)(f"can't do that ({name}) in auto mode with the interpreter {interp.name.lower()}")
+    raise rule.refusal(mode)(f"can't do that ({name}:{message.TYPE_ID}) in {MODE_NAMES[mode]} mode")

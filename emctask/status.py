@@ -78,6 +78,10 @@ class StatusWriter:
         self._forgotten = move
         self.message.task.motionLine = 0
 
+    def jogs_when_on(self, mode: TrajMode) -> None:
+        """What jogs move, axes or joints; a machine that is off shows it as well."""
+        self._mode_on = mode
+
     def _mode_when_on(self, task: Task) -> int:
         """How motion will move once the machine is on."""
         if task.mode is not Mode.MANUAL:

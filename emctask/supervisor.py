@@ -22,6 +22,7 @@ class Supervisor:
         self._lost: set[str] = set()
         self._in_error = False
         self._all_homed = False
+        self._homing_ordered = False
         self.homing_ends = False
         """Is the last joint homed, and motion about to change into teleop mode?"""
 
@@ -56,9 +57,9 @@ class Supervisor:
         arose, self._in_error = in_error and not self._in_error, in_error
         if not task.motion.refused() and not arose:
             return
+        task.failed |= arose or task.plan.active
         if task.plan.active:
             task.runner.abort(Reason.MOTION_OR_IO_RCS_ERROR)
-        task.failed = True
 
     def _state(self) -> None:
         task = self._task
@@ -69,17 +70,23 @@ class Supervisor:
         if before is State.ON:
             transitions.left_on(task, state)
 
+    def homing_ordered(self) -> None:
+        """Motion was told to home joints, perhaps some that are homed already."""
+        self._homing_ordered = True
+
     def _homed(self) -> None:
-        """When the last joint is homed, jogs in manual mode move axes from then on."""
+        """When the last joint is homed, or one of them anew, jogs in manual mode move axes from then on."""
         task = self._task
         if task.mode is not Mode.MANUAL:
             return
         before, self._all_homed = self._all_homed, task.motion.all_homed
         self.homing_ends |= self._all_homed and not before
-        if self.homing_ends and task.motion.settled and not task.motion.homing:
-            self.homing_ends = False
-            if task.state is State.ON:
-                task.motion.send(MotCommand.TELEOP)
+        if not task.motion.settled or task.motion.homing:
+            return
+        anew = self._homing_ordered and self._all_homed and not task.motion.refused_last
+        ended, self.homing_ends, self._homing_ordered = self.homing_ends or anew, False, False
+        if ended and task.state is State.ON:
+            task.motion.send(MotCommand.TELEOP)
 
     def _seen(self) -> State:
         """The state as motion and io show it."""

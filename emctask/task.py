@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from emctask import handlers, transitions
 from emctask.canon import TaskCanon
-from emctask.commandtable import REFUSALS, RULES, Refused, check
+from emctask.commandtable import REFUSALS, RULES, PassedOver, Refused, check
 from emctask.config import MachineConfig
 from emctask.inipins import IniPins
 from emctask.ioclient import IoClient
@@ -226,7 +226,8 @@ class Task:
             log.debug("%r", message)
             rule.handler(self, message)
         except Refused as refusal:
-            self.fail(str(refusal))
+            self.operator.error(str(refusal))
+            self.failed = not isinstance(refusal, PassedOver)
             self.results.end(self.echo, Outcome.REFUSED)
         else:
             told_elsewhere = self._expected is not None or self.runner.owns(self.echo)

@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from emctask import positionfile
-from emctask.commandtable import Refused
+from emctask.commandtable import PassedOver, Refused
 from nml.emc import EMC_AUX_ESTOP_OFF, EMC_AUX_ESTOP_ON, EMC_LUBE_OFF, EMC_LUBE_ON, EMC_TOOL_ABORT
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
+from nml.emc.constants import EMC_TRAJ_MODE_ENUM as TrajMode
 from nml.emc.constants import KINEMATICS_TYPE as Kinematics
 from nml.emc.emcmot import MotCommand, MotionState
 
@@ -44,10 +45,7 @@ def to_estop(task: Task) -> None:
 
 
 def to_estop_reset(task: Task) -> None:
-    """Ask for the chain to be closed; the machine stays off."""
-    if task.state is State.ON:
-        to_off(task)
-        return
+    """Ask for the chain to be closed; the machine stays off, or on: then this is an abort."""
     task.runner.abort(Reason.TASK_STATE_ESTOP_RESET)
     task.io.send(EMC_AUX_ESTOP_OFF())
     task.io.send(EMC_LUBE_OFF())
@@ -67,7 +65,7 @@ def to_off(task: Task) -> None:
 def to_on(task: Task) -> None:
     """Motion on; only from E-stop reset."""
     if task.state is State.ESTOP:
-        raise Refused("the machine cannot be turned on while it is in E-stop; reset the E-stop first")
+        raise PassedOver("the machine cannot be turned on while it is in E-stop; reset the E-stop first")
     if task.state is State.ON:
         return
     task.motion.send(MotCommand.ENABLE)
@@ -144,7 +142,7 @@ def request_mode(task: Task, wanted: Mode) -> None:
     if wanted is not Mode.MANUAL:
         task.motion.send(MotCommand.COORD)
     else:
-        task.motion.send(MotCommand.TELEOP if task.motion.all_homed else MotCommand.FREE)
+        choose_jogs(task, axes=task.motion.all_homed)
     task.mode = wanted
     task.plan.must_synch = True
     task.plan.forget_line()
@@ -154,9 +152,15 @@ def request_mode(task: Task, wanted: Mode) -> None:
         task.expect(lambda: motion_suits(task, wanted) or task.motion.refused_last, complaint)
 
 
+def choose_jogs(task: Task, *, axes: bool) -> None:
+    """Jogs move axes, or single joints; a machine that is off will do so when it is on."""
+    task.motion.send(MotCommand.TELEOP if axes else MotCommand.FREE)
+    task.status.jogs_when_on(TrajMode.TELEOP if axes else TrajMode.FREE)
+
+
 def motion_suits(task: Task, mode: Mode) -> bool:
-    """Does motion move in the way that the mode needs?"""
+    """Does motion move in the way that the mode begins with? A homed machine jogs axes until joints are asked for."""
     state = task.motion.state
     if mode is Mode.MANUAL:
-        return state in (MotionState.FREE, MotionState.TELEOP)
+        return state is MotionState.TELEOP or (state is MotionState.FREE and not task.motion.all_homed)
     return state is MotionState.COORD

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from emctask.commandtable import MANUAL, Refused, command, refuse
+from emctask.commandtable import ANY, MANUAL, PassedOver, Refused, command, passed_over, refuse
 from emctask.compensation import read_compensation
 from emctask.config import HOME_IGNORE_LIMITS, HOME_UNLOCK_FIRST, HOME_USE_INDEX
 from emctask.setup import send_compensation, send_homing
@@ -32,6 +32,7 @@ from nml.emc import (
     EMC_JOINT_SET_UNITS,
     EMC_JOINT_UNHOME,
 )
+from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.emcmot import MotCommand
 from nml.errors import ConfigError
 from nml.message import Message
@@ -47,7 +48,7 @@ VOLATILE = -2
 def _joint(task: Task, number: int, *special: int) -> int:
     count = len(task.config.joints)
     if not 0 <= number < count and number not in special:
-        raise Refused(f"there is no joint {number}; this machine has joints 0 to {count - 1}")
+        raise PassedOver(f"there is no joint {number}; this machine has joints 0 to {count - 1}")
     return number
 
 
@@ -55,10 +56,11 @@ def _joint(task: Task, number: int, *special: int) -> int:
 def home(task: Task, message: EMC_JOINT_HOME) -> None:
     """Home a joint, or all in their sequence (-1)."""
     task.motion.send(MotCommand.JOINT_HOME, joint=_joint(task, message.joint, ALL))
+    task.supervisor.homing_ordered()
     task.plan.must_synch = True
 
 
-@command(EMC_JOINT_UNHOME, on=True, modes=MANUAL)
+@command(EMC_JOINT_UNHOME, modes=MANUAL, refusal=passed_over)
 def unhome(task: Task, message: EMC_JOINT_UNHOME) -> None:
     """Forget where a joint is; -1: all, -2: those with a volatile home."""
     task.motion.send(MotCommand.JOINT_UNHOME, joint=_joint(task, message.joint, ALL, VOLATILE))
@@ -101,9 +103,16 @@ def disable(task: Task, message: EMC_JOINT_DISABLE) -> None:
 
 
 def _setting(
-    message_type: type[Message], source: str, attribute: str, send: Callable[[Task, int, JointConfig], None]
+    message_type: type[Message],
+    source: str,
+    attribute: str,
+    send: Callable[[Task, int, JointConfig], None],
+    modes: frozenset[Mode] = ANY,
 ) -> None:
-    """A command that changes one value of a joint: remembered, and sent to motion with its companions."""
+    """A command that changes one value of a joint: remembered, and sent to motion with its companions.
+
+    One that is for some modes only is for a machine that is on.
+    """
 
     def handler(task: Task, message: Any) -> None:
         number = _joint(task, message.joint)
@@ -112,7 +121,7 @@ def _setting(
         send(task, number, joint)
 
     handler.__doc__ = f"Set {attribute} of a joint."
-    command(message_type)(handler)
+    command(message_type, on=modes is not ANY, modes=modes)(handler)
 
 
 def _send_limits(task: Task, number: int, joint: JointConfig) -> None:
@@ -122,8 +131,8 @@ def _send_limits(task: Task, number: int, joint: JointConfig) -> None:
     task.motion.send(MotCommand.SET_JOINT_POSITION_LIMITS, joint=number, **fields)
 
 
-_setting(EMC_JOINT_SET_MIN_POSITION_LIMIT, "limit", "min_limit", _send_limits)
-_setting(EMC_JOINT_SET_MAX_POSITION_LIMIT, "limit", "max_limit", _send_limits)
+_setting(EMC_JOINT_SET_MIN_POSITION_LIMIT, "limit", "min_limit", _send_limits, MANUAL)
+_setting(EMC_JOINT_SET_MAX_POSITION_LIMIT, "limit", "max_limit", _send_limits, MANUAL)
 
 
 def _sender(order: MotCommand, field: str, attribute: str) -> Callable[[Task, int, JointConfig], None]:

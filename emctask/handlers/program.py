@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import AUTO, Refused, command
+from emctask.commandtable import AUTO, PassedOver, Refused, command
 from nml.emc import (
     EMC_TASK_PLAN_CLOSE,
     EMC_TASK_PLAN_END,
@@ -61,7 +61,11 @@ def close_program(task: Task, message: EMC_TASK_PLAN_CLOSE) -> None:
     task.plan.close()
 
 
-@command(EMC_TASK_PLAN_RUN, on=True, modes=AUTO, idle=True)
+def _refusal_to_run(mode: Mode) -> type[Refused]:
+    return PassedOver if mode is Mode.MANUAL else Refused
+
+
+@command(EMC_TASK_PLAN_RUN, on=True, modes=AUTO, idle=True, refusal=_refusal_to_run)
 def run(task: Task, message: EMC_TASK_PLAN_RUN) -> None:
     """Run the loaded program from a line; below 0: only check it."""
     if not task.plan.open_file:
@@ -81,13 +85,13 @@ def execute(task: Task, message: EMC_TASK_PLAN_EXECUTE) -> None:
     task.runner.run_mdi(message.command)
 
 
-@command(EMC_TASK_PLAN_PAUSE)
+@command(EMC_TASK_PLAN_PAUSE, on=True)
 def pause(task: Task, message: EMC_TASK_PLAN_PAUSE) -> None:
     """Hold the program."""
     task.runner.pause()
 
 
-@command(EMC_TASK_PLAN_RESUME)
+@command(EMC_TASK_PLAN_RESUME, on=True)
 def resume(task: Task, message: EMC_TASK_PLAN_RESUME) -> None:
     """Go on after a pause."""
     if task.paused or task.motion.status.paused or task.runner.stepping:
@@ -148,7 +152,7 @@ def synch(task: Task, message: EMC_TASK_PLAN_SYNCH) -> None:
 
 @command(EMC_TASK_PLAN_INIT, idle=True)
 def init(task: Task, message: EMC_TASK_PLAN_INIT) -> None:
-    """The interpreter goes back to its first modes and forgets the program; M1 stops, lines with a slash are skipped."""
+    """The interpreter goes back to its first modes and forgets the program; M1 and slashes act."""
     _set_optional_stop(task, True)
     _set_block_delete(task, True)
     try:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import Refused, always, command, refuse
+from emctask import transitions
+from emctask.commandtable import NEVER, PassedOver, Refused, always, command, refuse
 from nml.emc import (
     EMC_MOTION_ABORT,
     EMC_MOTION_ADAPTIVE,
@@ -53,7 +54,6 @@ from nml.emc import (
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
-from nml.emc.constants import EMC_TRAJ_MODE_ENUM as TrajMode
 from nml.emc.emcmot import MAX_AIO, MAX_DIO, MotCommand
 from nml.message import Message
 
@@ -135,26 +135,16 @@ def set_acceleration(task: Task, message: EMC_TRAJ_SET_ACCELERATION) -> None:
     task.motion.send(MotCommand.SET_ACC, acc=acceleration)
 
 
-@command(EMC_TRAJ_SET_TELEOP_ENABLE, on=True, idle=True)
+@command(EMC_TRAJ_SET_TELEOP_ENABLE, idle=True)
 def teleop(task: Task, message: EMC_TRAJ_SET_TELEOP_ENABLE) -> None:
     """Jog axes, or single joints: manual mode."""
     task.mode = Mode.MANUAL
-    task.motion.send(MotCommand.TELEOP if message.enable else MotCommand.FREE)
+    transitions.choose_jogs(task, axes=bool(message.enable))
 
 
-@command(EMC_TRAJ_SET_MODE, on=True)
+@command(EMC_TRAJ_SET_MODE, on=True, modes=NEVER)
 def set_mode(task: Task, message: EMC_TRAJ_SET_MODE) -> None:
-    """Free, coordinated or teleop."""
-    orders = {
-        TrajMode.FREE: MotCommand.FREE,
-        TrajMode.COORD: MotCommand.COORD,
-        TrajMode.TELEOP: MotCommand.TELEOP,
-    }
-    if message.mode not in orders:
-        raise Refused(f"EMC_TRAJ_SET_MODE: {message.mode} is no mode; 1 free, 2 coordinated, 3 teleop are")
-    if task.busy_with_program:
-        raise Refused("motion's mode cannot be changed while a program runs; abort it first")
-    task.motion.send(orders[TrajMode(message.mode)])
+    """Refused in every mode, as in LinuxCNC: the mode of motion follows task's, and TELEOP_ENABLE."""
 
 
 @command(EMC_TRAJ_CLEAR_PROBE_TRIPPED_FLAG)
@@ -205,7 +195,7 @@ def disable(task: Task, message: EMC_TRAJ_DISABLE) -> None:
 def set_digital(task: Task, message: EMC_MOTION_SET_DOUT) -> None:
     """Set a digital output."""
     if message.index >= MAX_DIO:
-        raise Refused(f"there is no digital output {message.index}; 0 to {MAX_DIO - 1} are")
+        raise PassedOver(f"there is no digital output {message.index}; 0 to {MAX_DIO - 1} are")
     fields = {"now": message.now, "out": message.index, "start": message.start, "end": message.end}
     task.motion.send(MotCommand.SET_DOUT, **fields)
 
@@ -214,7 +204,7 @@ def set_digital(task: Task, message: EMC_MOTION_SET_DOUT) -> None:
 def set_analog(task: Task, message: EMC_MOTION_SET_AOUT) -> None:
     """Set an analog output."""
     if message.index >= MAX_AIO:
-        raise Refused(f"there is no analog output {message.index}; 0 to {MAX_AIO - 1} are")
+        raise PassedOver(f"there is no analog output {message.index}; 0 to {MAX_AIO - 1} are")
     task.motion.send(
         MotCommand.SET_AOUT, now=message.now, out=message.index, minLimit=message.start, maxLimit=message.end
     )

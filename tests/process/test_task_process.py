@@ -36,12 +36,13 @@ def test_commands_are_refused_with_a_reason_while_they_cannot_be_done(desk):
     assert (status.exec_state, status.inpos, status.state, status.rapidrate) == (2, True, DONE, 1.0)
     assert desk.mdi("G0 X1") == ERROR
     assert desk.texts[-1].endswith("until the machine is out of E-stop and turned on")
-    assert desk.do(desk.command.state, linuxcnc.STATE_ON) == ERROR
+    assert desk.do(desk.command.state, linuxcnc.STATE_ON) == DONE  # as in LinuxCNC, which says nothing
     assert "reset the E-stop first" in desk.texts[-1]
+    assert desk.stat.task_state == linuxcnc.STATE_ESTOP
     desk.ready(linuxcnc.MODE_MANUAL)
     assert desk.mdi("G0 X1") == ERROR
     assert desk.texts[-1] == "Must be in MDI mode to issue MDI command"
-    assert desk.do(desk.command.jog, linuxcnc.JOG_CONTINUOUS, False, 8, 1.0) == ERROR
+    assert desk.do(desk.command.jog, linuxcnc.JOG_CONTINUOUS, False, 8, 1.0) == DONE
     assert "axis 8 cannot be jogged" in desk.texts[-1]
 
 
