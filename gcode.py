@@ -11,6 +11,7 @@ read. Remapped codes and subroutine folders are those of the INI file that INI_F
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterable, Sequence
 from math import atan2, cos, hypot, pi, sin, tau
 from typing import Any
@@ -24,6 +25,7 @@ MIN_ERROR, MAX_ERROR = 3, -1
 INTERP_ERROR = 5
 NOWHERE = 9e99
 SEGMENTS_MIN = 3
+ASKED_EVERY_S = 1.0  # how often a display is asked whether it wants to abort
 PLANE_AXES = {1: (0, 1, 2), 2: (1, 2, 0), 3: (2, 0, 1)}
 
 linecode = LineCode
@@ -34,7 +36,7 @@ def parse(filename: str, canon: Any, *codes: str | list[str]) -> tuple[int, int]
     """Run a program: (result, number of the last line); results above MIN_ERROR are errors, see ``strerror``.
 
     ``codes``: a list of lines that are run before it, or one or two such lines; a last text names one of LinuxCNC's
-    other interpreters, of which there is none. ``canon.check_abort()`` is asked at every line; when it says yes,
+    other interpreters, of which there is none. ``canon.check_abort()`` is asked once a second; when it says yes,
     KeyboardInterrupt is raised.
     """
     global _last_error
@@ -80,10 +82,13 @@ def _run(interp: Interpreter, machine: CallbackCanon) -> tuple[int, int]:
     """Line after line."""
     asked = getattr(machine.target, "check_abort", None)
     result = INTERP_OK
+    next_time = time.monotonic() + ASKED_EVERY_S
     try:
         while result not in (INTERP_EXIT, INTERP_ENDFILE):
-            if callable(asked) and asked():
-                raise KeyboardInterrupt
+            if callable(asked) and time.monotonic() >= next_time:
+                next_time += ASKED_EVERY_S
+                if asked():
+                    raise KeyboardInterrupt
             machine.begin_line()
             result = interp.read()
             if result != INTERP_ENDFILE:

@@ -111,7 +111,7 @@ cdef class Interpreter:
         cdef double factor
         if not s.g92_persistent:
             memset(s.g92, 0, sizeof(s.g92))
-            s.params[5210] = 0.0
+            memset(&s.params[5210], 0, 10 * sizeof(double))
         elif s.params[5210] != 0.0:
             factor = self.canon.get_external_length_units() * (25.4 if s.units == CANON_UNITS_INCHES else 1.0)
             for k in range(9):

@@ -38,7 +38,7 @@ def outside_value(State s, str name):
         section, _, key = name[5:].partition("]")
         text = s.ini.find(section.upper(), key.upper()) if s.ini is not None else None
         if text is None:
-            raise InterpError(f"Named INI parameter #<{name}> not found in INI file")
+            raise InterpError(f"Named parameter #<{name}> not defined")
         try:
             return float(text)
         except ValueError:

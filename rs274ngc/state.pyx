@@ -35,7 +35,7 @@ cdef class State:
         self.persistent = set()
         self.subroutine_path = []
         self.program_prefix = ""
-        self.fanuc_subs = True
+        self.fanuc_subs = self.g92_persistent = True
         self.spindles = 1
         self.features = 0
         self.arc_tolerance_inch = 0.002 * 2.0**0.5

@@ -134,6 +134,12 @@ def test_a_display_can_abort(program):
         gcode.parse(program("o1 while [1]\ng0 x1\no1 endwhile\nm2\n"), display)
 
 
+def test_a_display_is_not_asked_about_a_short_program(program):
+    display = Display()
+    display.check_abort = lambda: pytest.fail("a second has not gone by")
+    assert gcode.parse(program("g0 x1\nm2\n"), display)[0] == 1
+
+
 def test_a_canon_without_methods_is_enough(program):
     assert gcode.parse(program("g0 x1\nt0 m6\nm2\n"), object()) == (1, 3)
 

@@ -163,3 +163,19 @@ def test_the_command_reports_an_error_as_programs_expect_it_and_its_place_when_a
     assert capfd.readouterr().err == f"executing\n{message}"
     assert rs274.main(["-g", "-s", "part.ngc"]) == 1
     assert re.fullmatch(rf"executing\npart\.ngc:2(:\d+)?:\n{message}", capfd.readouterr().err)
+
+
+@pytest.mark.parametrize(
+    ("ini", "active", "first"),
+    [(None, 1.0, 2.0), ("", 1.0, 2.0), ("DISABLE_G92_PERSISTENCE = 1", 0.0, 0.0)],
+    ids=["no INI file", "not disabled", "disabled"],
+)
+def test_g92_outlives_the_program_unless_the_ini_file_forbids_it(tmp_path, monkeypatch, capfd, ini, active, first):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.ngc").write_text("(print,#5210 #5211)\nm2\n")
+    (tmp_path / "kept.var").write_text("5210 1\n5211 2\n5220 1\n")
+    (tmp_path / "machine.ini").write_text(f"[RS274NGC]\n{ini}\n")
+    options = ["-g", "-v", "kept.var"] if ini is None else ["-g", "-v", "kept.var", "-i", "machine.ini"]
+    for _ in range(2):
+        assert rs274.main([*options, "part.ngc"]) == 0
+        assert f"{active:.6f} {first:.6f}" in capfd.readouterr().out
