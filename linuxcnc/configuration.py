@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import os
 import shlex
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import posix_ipc
-
-import nml
 from hal.session import find_hal_file
+from linuxcnc import systempython
 from linuxcnc._constants import version
 from linuxcnc.motionmodules import HOMING, PLANNER
 from linuxcnc.options import Overrides
@@ -21,9 +18,7 @@ from nml.config import NmlConfig
 from nml.errors import ConfigError, Place
 from nml.inifile import IniFile
 
-PACKAGES_FOLDER = Path(nml.__file__).parent.parent
 HALLIB = Path("/usr/share/linuxcnc/hallib")
-SYSTEM_PYTHON = Path("/usr/bin/python3")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
 FOR_DISPLAYS = {
     "LINUXCNC_HOME": "/usr",
@@ -44,13 +39,6 @@ class HalFile:
 
     path: Path
     arguments: list[str]
-
-
-def _packages() -> list[str]:
-    """Folders of our packages and of what they import, the latter for scripts that name a system Python like ours."""
-    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
-    same = os.path.realpath(SYSTEM_PYTHON).endswith(version)
-    return [str(PACKAGES_FOLDER), *([str(Path(posix_ipc.__file__).parent)] if same else [])]
 
 
 class Configuration:
@@ -151,7 +139,7 @@ class Configuration:
             "TRAJ_COORDINATES": self.ini.find("TRAJ", "COORDINATES") or "",
             "KINS_KINEMATICS": self.ini.find("KINS", "KINEMATICS") or "",
             "PATH": self.programs.search_path(),
-            "PYTHONPATH": os.pathsep.join(filter(None, [*_packages(), variables.get("PYTHONPATH")])),
+            **systempython.environment(),
         }
         if self.nml_file is not None:
             variables["NMLFILE"] = str(self.nml_file)

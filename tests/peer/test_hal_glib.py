@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from linuxcnc.configuration import SYSTEM_PYTHON, _packages
+from linuxcnc.systempython import SYSTEM_PYTHON, environment, is_ours
 
 SCRIPT = """
 import _hal, hal, hal_glib
@@ -24,13 +24,12 @@ with hal.component("panel") as c:
     print(isinstance(pin, hal.Pin), lamp.is_pin(), lamp.get(), _hal.component is hal.component)
 """
 DEBIAN = Path("/usr/lib/python3/dist-packages")
-FOUND = (DEBIAN / "hal_glib.py").exists() and (DEBIAN / "gi").exists() and len(_packages()) > 1
+FOUND = (DEBIAN / "hal_glib.py").exists() and (DEBIAN / "gi").exists() and is_ours()
 
 
 @pytest.mark.peer
 @pytest.mark.skipif(not FOUND, reason="Debian's hal_glib, or a Python of its version, is not installed")
 def test_a_glib_pin_is_a_pin_of_ours_and_tells_its_changes():
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_packages())}
-    command = [SYSTEM_PYTHON, "-c", SCRIPT]
-    done = subprocess.run(command, env=environment, cwd="/", capture_output=True, text=True, timeout=120, check=False)
+    command, variables = [SYSTEM_PYTHON, "-c", SCRIPT], os.environ | environment()
+    done = subprocess.run(command, env=variables, cwd="/", capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout.splitlines() == ["[2.5, 4.0] 4.0 speed True True", "True True False True"], done.stderr
