@@ -18,6 +18,7 @@ from tests.support.machine import ROOT
 CHROMIUM = os.environ.get("PYEMC_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 ARGUMENTS = [
     "--no-sandbox",
+    "--disable-dev-shm-usage",  # a container has little of it, and the machines live there
     "--disable-gpu",
     "--use-gl=angle",
     "--use-angle=swiftshader",
