@@ -1,8 +1,12 @@
-"""Whatever moves and commands come at whatever time, no axis limit breaks and the path stays within tolerance."""
+"""Whatever moves and commands come at whatever time, no limit breaks and the path stays within tolerance.
+
+Each property is asked for twice: with limits of velocity and acceleration only, and of jerk too.
+"""
 
 import os
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -11,19 +15,22 @@ from emcmot.tp.verifier import Arc, Line, verify
 
 DT = 0.001
 ROUNDING = 1 + 1e-6
+COMPARED = 400  # positions of a job that are compared with its path
 EXAMPLES = int(os.environ.get("PYEMC_EXAMPLES", "10"))  # of each property; hundreds find more
 SETTINGS = settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+KINDS = pytest.mark.parametrize("jerk", [False, True], ids=["acceleration", "jerk"])
+AT_LAST = (("reverse", False), ("resume",), ("feed_hold", False), ("feed_scale", 1.0), ("vel_limit", 0.0))
 
-coordinate = st.one_of(
-    st.floats(-8, 8),
-    st.integers(-4, 4).map(float),
-    st.integers(-3, 3).map(lambda k: k * 0.001),
-)
-point = st.tuples(coordinate, coordinate, coordinate)
-needle = st.tuples(st.just(0.0), st.integers(-2, 2).map(lambda k: 2.0 * k), st.just(0.0))
-limit = st.tuples(st.floats(20, 150), st.floats(100, 2000))
+coordinate = st.one_of(st.floats(-8, 8), st.integers(-4, 4).map(float), st.integers(-3, 3).map(lambda k: k * 0.001))
+needle = st.tuples(st.just(0.0), st.integers(-2, 2).map(lambda k: 2.0 * k), st.just(0.0), st.just(0.0))
+point = st.one_of(st.tuples(coordinate, coordinate, coordinate, st.sampled_from([0.0, 0.0, 5.0, -20.0])), needle)
+turn = st.sampled_from([None, None, 0, -1])  # an arc turns that way, half round the middle of its chord
+limit = st.tuples(st.floats(20, 150), st.floats(100, 2000), st.floats(2000, 100_000))
+limits = st.tuples(limit, limit, limit, limit)
+tolerance = st.sampled_from([0.002, 0.02, 0.2, 2.0])
+feed = st.floats(5, 120)
 command = st.tuples(
-    st.integers(1, 90),
+    st.integers(1, 200),
     st.sampled_from(
         [
             ("feed_scale", 0.0),
@@ -39,118 +46,123 @@ command = st.tuples(
             ("pause",),
             ("resume",),
             ("step_once",),
+            ("reverse", True),
+            ("reverse", False),
         ]
     ),
 )
 
 
-def build(limits, tolerance):
-    planner = Planner(DT, 500)
-    for axis, (vel, acc) in enumerate(limits):
-        planner.set_limits(axis, vel, acc)
-    return planner
+class Job:
+    """Moves given to a planner with limits, and the path that they stand for."""
 
+    def __init__(self, jerk, limits, tolerance, feed):
+        self.planner, self.limits, self.tolerance, self.feed = Planner(DT, 500), limits, tolerance, feed
+        self.jerk = jerk
+        for axis, values in enumerate(limits):
+            self.planner.set_limits(axis, *values)
+        self.planner.limit_jerk(jerk)
+        self.path, self.at = [], np.zeros(9)
 
-def add(planner, path, at, end, bulge, tolerance, feed):
-    """One move: a line, or where `bulge` is given a half turn about the middle of the chord."""
-    end9 = np.zeros(9)
-    end9[:3] = end
-    chord = np.hypot(*(end9[:2] - at[:2]))
-    if bulge is None or chord < 1e-3:
-        assert planner.add_line(end9, feed, tolerance=tolerance, vel_max=feed * 2, id=len(path) + 1)
-        if not np.array_equal(at, end9):
-            path.append(Line(at, end9))
-    else:
-        center = np.array([*(at[:2] + end9[:2]) / 2, at[2]])
-        assert planner.add_arc(end9, center, (0, 0, 1), bulge, feed, tolerance=tolerance, vel_max=feed * 2)
-        path.append(Arc(at, end9, center, np.array([0.0, 0, 1]), bulge))
-    return end9
+    def add(self, end, turn):
+        end9 = np.zeros(9)
+        end9[: len(end)] = end
+        options = {"tolerance": self.tolerance, "vel_max": self.feed * 2, "id": len(self.path) + 1}
+        if turn is None or np.hypot(*(end9[:2] - self.at[:2])) < 1e-3:
+            assert self.planner.add_line(end9, self.feed, **options)
+            if not np.array_equal(self.at, end9):
+                self.path.append(Line(self.at, end9))
+        else:
+            center = np.array([*(self.at[:2] + end9[:2]) / 2, self.at[2]])
+            assert self.planner.add_arc(end9, center, (0, 0, 1), turn, self.feed, **options)
+            self.path.append(Arc(self.at, end9, center, np.array([0.0, 0, 1]), turn))
+        self.at = end9
 
+    def come_to_rest(self):
+        self.planner.pause()
+        return self.planner.step(8000)
 
-def check(positions, path, limits, tolerance):
-    vmax = np.array([vel for vel, _ in limits] + [1.0] * 6)
-    amax = np.array([acc for _, acc in limits] + [1.0] * 6)
-    report = verify(positions, path, vmax, amax, DT, tolerance, stride=3)
-    assert report.worst_velocity <= ROUNDING
-    assert report.worst_acceleration <= ROUNDING
-    assert report.deviation <= tolerance + 1e-6
-    assert report.end == 0.0
-
-
-@SETTINGS
-@given(
-    moves=st.lists(st.tuples(st.one_of(point, needle), st.sampled_from([None, None, 0, -1])), min_size=1, max_size=25),
-    limits=st.tuples(limit, limit, limit),
-    tolerance=st.sampled_from([0.002, 0.02, 0.2]),
-    feed=st.floats(5, 120),
-)
-def test_any_chain_of_moves_keeps_limits_and_tolerance(moves, limits, tolerance, feed):
-    planner, path, at = build(limits, tolerance), [], np.zeros(9)
-    for end, bulge in moves:
-        at = add(planner, path, at, end, bulge, tolerance, feed)
-    if path:
-        check(planner.run_to_end(), path, limits, tolerance)
-
-
-@SETTINGS
-@given(
-    moves=st.lists(st.tuples(point, st.sampled_from([None, None, 0, -1])), min_size=3, max_size=15),
-    commands=st.lists(command, max_size=25),
-    limits=st.tuples(limit, limit, limit),
-    feed=st.floats(5, 120),
-)
-def test_commands_at_any_instant_break_nothing(moves, commands, limits, feed):
-    planner, path, at = build(limits, 0.02), [], np.zeros(9)
-    for end, bulge in moves:
-        at = add(planner, path, at, end, bulge, 0.02, feed)
-    parts = []
-    for periods, (name, *arguments) in commands:
-        parts.append(planner.step(periods))
-        getattr(planner, name)(*arguments)
-    for name, *arguments in (("resume",), ("feed_hold", False), ("feed_scale", 1.0), ("vel_limit", 0.0)):
-        getattr(planner, name)(*arguments)
-    parts.append(planner.run_to_end())
-    if path:
-        check(np.concatenate(parts), path, limits, 0.02)
-
-
-@SETTINGS
-@given(
-    moves=st.lists(
-        st.tuples(point, st.sampled_from([None, None, 0, -1]), st.integers(0, 120)), min_size=2, max_size=20
-    ),
-    limits=st.tuples(limit, limit, limit),
-    tolerance=st.sampled_from([0.002, 0.2, 2.0]),
-)
-def test_moves_that_arrive_late_are_joined_without_a_jolt(moves, limits, tolerance):
-    planner, path, at, parts = build(limits, tolerance), [], np.zeros(9), []
-    for end, bulge, periods in moves:
-        at = add(planner, path, at, end, bulge, tolerance, 60.0)
-        parts.append(planner.step(periods))
-    parts.append(planner.run_to_end())
-    if path:
-        check(np.concatenate(parts), path, limits, tolerance)
-
-
-@SETTINGS
-@given(
-    moves=st.lists(st.tuples(point, st.sampled_from([None, None, 0, -1])), min_size=2, max_size=15),
-    limits=st.tuples(limit, limit, limit),
-    periods=st.integers(1, 1500),
-)
-def test_an_abort_at_any_instant_comes_to_rest_within_limits(moves, limits, periods):
-    planner, path, at = build(limits, 0.05), [], np.zeros(9)
-    for end, bulge in moves:
-        at = add(planner, path, at, end, bulge, 0.05, 80.0)
-    parts = [planner.step(periods)]
-    planner.abort()
-    parts.append(planner.run_to_end(20.0))
-    positions = np.concatenate(parts)
-    assert planner.status()["done"]
-    if path:
-        vmax = np.array([vel for vel, _ in limits] + [1.0] * 6)
-        amax = np.array([acc for _, acc in limits] + [1.0] * 6)
-        report = verify(positions, path, vmax, amax, DT, 0.05, stride=3)
+    def check(self, positions):
+        assert self.planner.status()["done"]
+        if not self.path:
+            return
+        rows = [*self.limits, *[(1.0, 1.0, 1.0)] * (9 - len(self.limits))]
+        vmax, amax, jmax = (np.array(column) for column in zip(*rows, strict=True))
+        stride = max(1, len(positions) // COMPARED)
+        report = verify(
+            positions, self.path, vmax, amax, DT, self.tolerance, stride, jmax if self.jerk else None
+        )  # fmt: skip
         assert report.worst_velocity <= ROUNDING
         assert report.worst_acceleration <= ROUNDING
-        assert report.deviation <= 0.05 + 1e-6
+        assert report.worst_jerk <= ROUNDING
+        assert report.deviation <= self.tolerance + 1e-6
+
+    def check_to_the_end(self, positions):
+        self.check(positions)
+        assert np.array_equal(self.planner.status()["pos"], self.at)
+
+
+@KINDS
+@SETTINGS
+@given(moves=st.lists(st.tuples(point, turn), min_size=1, max_size=20), limits=limits, tolerance=tolerance, feed=feed)
+def test_any_chain_of_moves_keeps_every_limit_and_arrives(jerk, moves, limits, tolerance, feed):
+    job = Job(jerk, limits, tolerance, feed)
+    for move in moves:
+        job.add(*move)
+    job.check_to_the_end(job.planner.run_to_end(300.0))
+
+
+@KINDS
+@SETTINGS
+@given(
+    moves=st.lists(st.tuples(point, turn), min_size=1, max_size=15),
+    commands=st.lists(command, max_size=25),
+    limits=limits,
+    feed=feed,
+)
+def test_commands_at_any_instant_break_nothing(jerk, moves, commands, limits, feed):
+    job = Job(jerk, limits, 0.02, feed)
+    for move in moves:
+        job.add(*move)
+    parts = []
+    for periods, (name, *arguments) in commands:
+        parts.append(job.planner.step(periods))
+        getattr(job.planner, name)(*arguments)
+    parts.append(job.come_to_rest())
+    for name, *arguments in AT_LAST:
+        getattr(job.planner, name)(*arguments)
+    parts.append(job.planner.run_to_end(300.0))
+    job.check_to_the_end(np.concatenate(parts))
+
+
+@KINDS
+@SETTINGS
+@given(
+    moves=st.lists(st.tuples(point, turn, st.integers(0, 200)), min_size=2, max_size=20),
+    limits=limits,
+    tolerance=tolerance,
+)
+def test_moves_that_arrive_late_are_joined_without_a_jolt(jerk, moves, limits, tolerance):
+    job, parts = Job(jerk, limits, tolerance, 60.0), []
+    for end, turn, periods in moves:
+        job.add(end, turn)
+        parts.append(job.planner.step(periods))
+    parts.append(job.planner.run_to_end(300.0))
+    job.check_to_the_end(np.concatenate(parts))
+
+
+@KINDS
+@SETTINGS
+@given(
+    moves=st.lists(st.tuples(point, turn), min_size=1, max_size=15),
+    limits=limits,
+    periods=st.integers(1, 1500),
+)
+def test_an_abort_at_any_instant_comes_to_rest_within_limits(jerk, moves, limits, periods):
+    job = Job(jerk, limits, 0.05, 80.0)
+    for move in moves:
+        job.add(*move)
+    parts = [job.planner.step(periods)]
+    job.planner.abort()
+    parts.append(job.planner.run_to_end(20.0))
+    job.check(np.concatenate(parts))
