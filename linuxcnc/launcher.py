@@ -99,6 +99,7 @@ def _launch(options: argparse.Namespace) -> int:
         with Machine(configuration, report, options.talk) as machine:
             machine.start()
             started = True
+            _warn(ini)
             if options.run is not None:
                 part = filtered(configuration.ini, options.run.resolve(), say=to_stderr)
                 print(run_program(machine.check, part), flush=True)
@@ -133,6 +134,15 @@ def _check(ini: Path) -> int:
     for finding in found:
         print(finding)
     return 1 if found else 0
+
+
+def _warn(ini: Path) -> None:
+    """Say what did not keep the machine from starting, but is not what its user meant."""
+    from linuxcnc.check import WARNINGS, findings
+    from linuxcnc.machine import to_stderr
+
+    for finding in findings(ini, WARNINGS):
+        to_stderr(finding)
 
 
 def _other_findings(ini: Path, said: list[str]) -> list[str]:

@@ -21,6 +21,7 @@ RULES: tuple[Rule, ...] = (
     files.hal_files,
     files.references,
     entries.sections,
+    entries.misspelt_keys,
     entries.unknown_keys,
     entries.values,
     files.programs,
@@ -35,14 +36,25 @@ RULES: tuple[Rule, ...] = (
     machine.homing,
     machine.home_sequence,
     machine.periods,
+    machine.servo_period,
 )
 """``hal_files`` gathers what the rules after it look at."""
 
+WARNINGS: tuple[Rule, ...] = (
+    files.lines,
+    files.hal_files,
+    entries.sections,
+    entries.misspelt_keys,
+    machine.periods,
+    machine.servo_period,
+)
+"""Those whose findings let a machine start, but other than its user meant."""
 
-def findings(path: Path) -> list[str]:
-    """All that is wrong, in the order of the rules, each once; a file that cannot be read is the only finding."""
+
+def findings(path: Path, rules: tuple[Rule, ...] = RULES) -> list[str]:
+    """What is wrong by ``rules``, in their order, each once; a file that cannot be read is the only finding."""
     try:
         checked = Checked(IniFile(path))
     except ConfigError as error:
         return [str(error)]
-    return list(dict.fromkeys(finding for rule in RULES for finding in rule(checked)))
+    return list(dict.fromkeys(finding for rule in rules for finding in rule(checked)))

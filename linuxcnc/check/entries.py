@@ -30,19 +30,28 @@ def sections(checked: Checked) -> Iterator[str]:
             yield finding(checked.place(section), f"nobody reads section [{section}]", f"did you mean [{near}]?")
 
 
+def misspelt_keys(checked: Checked) -> Iterator[str]:
+    """Keys that nobody knows are not nearly the name of one that is missing."""
+    for section, key, near in _unknown(checked):
+        if near:
+            yield finding(checked.place(section, key), f"nobody reads [{section}]{key}", f"did you mean {near}?")
+
+
 def unknown_keys(checked: Checked) -> Iterator[str]:
-    """Keys are known here or used by a HAL file; where strangers may look for keys, they are not misspelt."""
+    """Other keys are known here or used by a HAL file, but where strangers may look for some of their own."""
+    for section, key, near in _unknown(checked):
+        if not near and section not in OPEN_SECTIONS and not checked.scripted:
+            yield finding(checked.place(section, key), f"nobody reads [{section}]{key}", "leave it out")
+
+
+def _unknown(checked: Checked) -> Iterator[tuple[str, str, str | None]]:
+    """Section and name of each key that nobody knows, and what was probably meant."""
     for section in checked.ini.sections():
         known = TABLE.get(family(section), {})
         there = checked.ini.keys(section)
         for key in there if known else ():
-            if lookup(section, key) or (section, key) in checked.references:
-                continue
-            near = nearest(key, [name for name in known if name not in there])
-            if near:
-                yield finding(checked.place(section, key), f"nobody reads [{section}]{key}", f"did you mean {near}?")
-            elif section not in OPEN_SECTIONS and not checked.scripted:
-                yield finding(checked.place(section, key), f"nobody reads [{section}]{key}", "leave it out")
+            if not lookup(section, key) and (section, key) not in checked.references:
+                yield section, key, nearest(key, [name for name in known if name not in there])
 
 
 def values(checked: Checked) -> Iterator[str]:

@@ -11,6 +11,8 @@ from linuxcnc.check.base import Checked, finding, listed_coordinates, nearest
 from linuxcnc.inikeys import family
 
 AXES = "XYZABCUVW"
+SHORTEST_NS, LONGEST_NS = 20_000, 20_000_000  # servo periods that a machine can be run with
+FEWEST_PERIODS = 2.0  # in which a joint may come to its full speed
 SLACK = 1e-9  # lu or au, by which an axis may exceed its joint: what inch and mm differ in by rounding
 
 
@@ -133,3 +135,23 @@ def periods(checked: Checked) -> Iterator[str]:
     if servo and base and base > servo:
         what = f"[EMCMOT]BASE_PERIOD = {base:g}"
         yield finding(checked.place("EMCMOT", "BASE_PERIOD"), what, f"at most SERVO_PERIOD = {servo:g} is needed")
+
+
+def servo_period(checked: Checked) -> Iterator[str]:
+    """The servo period is one that machines have, and short beside what its joints do in one."""
+    period_ns = checked.number("EMCMOT", "SERVO_PERIOD", 1e6)
+    if not period_ns or period_ns <= 0.0:
+        return
+    place = checked.place("EMCMOT", "SERVO_PERIOD")
+    what = f"[EMCMOT]SERVO_PERIOD = {period_ns:g} ns"
+    if not SHORTEST_NS <= period_ns <= LONGEST_NS:
+        yield finding(place, what, f"from {SHORTEST_NS} to {LONGEST_NS} is usual, 1000000 is a millisecond")
+        return
+    period = period_ns * 1e-9
+    for number in checked.joints():
+        section = f"JOINT_{number}"
+        speed, rate = checked.number(section, "MAX_VELOCITY"), checked.number(section, "MAX_ACCELERATION")
+        if speed and rate and speed < rate * period * FEWEST_PERIODS:
+            right = f"at most {speed / (period * FEWEST_PERIODS):g} is needed, or a shorter period"
+            said = f"[{section}]MAX_ACCELERATION = {rate:g} reaches full speed within {FEWEST_PERIODS:g} servo periods"
+            yield finding(checked.place(section, "MAX_ACCELERATION"), said, right)

@@ -46,6 +46,13 @@ def test_the_modules_of_this_build_are_accepted(tmp_path):
     assert (run.finish(), run.errors) == (7, "")
 
 
+def test_a_misspelt_entry_is_named_at_a_normal_start_too(tmp_path):
+    run = started(tmp_path, changes={"JOINT_0.TYPE": "LINEAR\nMAX_JERQ = 500"})
+    assert run.finish() == 7
+    (line,) = run.errors.splitlines()
+    assert line.endswith("nobody reads [JOINT_0]MAX_JERQ; did you mean MAX_JERK?")
+
+
 @pytest.mark.parametrize(
     ("option", "module"), [("-t", "mytp"), ("-m", "homecomp"), ("-t", "mytp depth=3")], ids=lambda text: text
 )
