@@ -41,7 +41,7 @@ MISTAKES = [
     ("[EMCMOT]", "[EMCMOT]\nHOMEMOD = homecomp", r"\[EMCMOT\]HOMEMOD = homecomp: no such module; use homemod"),
     ("[EMCMOT]", "[EMCMOT]\nBASE_PERIOD = 2000000", r"BASE_PERIOD = 2e\+06; at most SERVO_PERIOD = 1e\+06"),
     ("SERVO_PERIOD = 1000000", "SERVO_PERIOD = 1000", r"\[EMCMOT\]SERVO_PERIOD = 1000 ns; from 20000 to"),
-    ("[JOINT_2]", "[JOINT_2]\nMAX_ACCELERATION = 60000", r"\[JOINT_2\]MAX_ACCELERATION = 60000 reaches full .*; at most"),
+    ("[JOINT_2]", "[JOINT_2]\nMAX_ACCELERATION = 60000", r"\[JOINT_2\]MAX_ACCELERATION = 60000 reaches .*; at most"),
 ]
 
 
