@@ -256,7 +256,7 @@ def _logical_lines(path: Path, remarks: list[str], depth: int = 0) -> Iterator[t
         message = f"#INCLUDE goes {MAX_INCLUDE_DEPTH} files deep; does a file include itself?"
         raise ConfigError(message, Place(str(path)))
     joined, start = "", 0
-    for number, line in enumerate(_read(path).splitlines(), 1):
+    for number, line in enumerate(_lines(path), 1):
         if not joined:
             start = number
             if include := _INCLUDE.match(line):
@@ -277,9 +277,11 @@ def _logical_lines(path: Path, remarks: list[str], depth: int = 0) -> Iterator[t
         yield joined.strip(), Place(str(path), start)
 
 
-def _read(path: Path) -> str:
+def _lines(path: Path) -> list[str]:
+    """Lines end with LF or CR LF; any other character, a lone CR too, is part of one, as for LinuxCNC."""
     try:
-        return path.read_text(encoding="utf-8", errors="surrogateescape")
+        with path.open(encoding="utf-8", errors="surrogateescape", newline="") as file:
+            return [line.removesuffix("\r") for line in file.read().split("\n")]
     except OSError as error:
         raise ConfigError(f"cannot read the INI file: {error.strerror}", Place(str(path))) from None
 

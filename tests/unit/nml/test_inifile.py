@@ -148,3 +148,11 @@ def test_a_file_that_includes_itself_is_refused(tmp_path: Path):
 def test_a_missing_file_is_one_line(tmp_path: Path):
     with pytest.raises(ConfigError, match=r"none\.ini: cannot read the INI file: No such file"):
         IniFile(tmp_path / "none.ini")
+
+
+def test_lines_end_with_lf_or_cr_lf_and_nothing_else(tmp_path: Path):
+    (tmp_path / "ends.ini").write_bytes("[A]\nLF = 1\r\nCRLF = x\u2028y\x0cz\nCUT = a \\\r\nb\n".encode())
+    (tmp_path / "cr.ini").write_bytes(b"[A]\rLOST = 1\r")
+    ini = IniFile(tmp_path / "ends.ini")
+    assert [ini.find("A", key) for key in ("LF", "CRLF", "CUT")] == ["1", "x\u2028y\x0cz", "a b"]
+    assert IniFile(tmp_path / "cr.ini").find("A", "LOST") is None
