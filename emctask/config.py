@@ -7,12 +7,12 @@ in machine units (lu), angles in machine angle units (deg by default), times in 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from emctask.compensation import read_compensation
+from nml import pulse
 from nml.emc.emcmot import MAX_JOINTS, MAX_SPINDLES
 from nml.inifile import IniFile
 
@@ -26,18 +26,7 @@ def default_heartbeat_s() -> float:
 
     Where the system allows no realtime priority, a healthy task may be late by more than 0.1 s on a busy computer.
     """
-    return 0.1 if _may_have_priority() else 0.5
-
-
-def _may_have_priority() -> bool:
-    """Does the system let this process have realtime priority, as the thread that gives its signs of life should?"""
-    before = os.sched_getscheduler(0), os.sched_getparam(0)
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    except OSError:
-        return False
-    os.sched_setscheduler(0, *before)
-    return True
+    return 0.1 if pulse.has_priority() else 0.5
 
 
 LENGTH_UNITS = {

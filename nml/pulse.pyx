@@ -69,8 +69,12 @@ cdef void* beat_main(void* arg) noexcept nogil:
     return NULL
 
 
-cdef int start(Beat* beat) noexcept nogil:
-    """Start the thread with the lowest realtime priority, or with none where that is not allowed; an errno."""
+cdef void* no_work(void* arg) noexcept nogil:
+    return NULL
+
+
+cdef int start_first(pthread_t* thread, void* (*work)(void*) noexcept nogil, void* arg) noexcept nogil:
+    """Start a thread with the lowest realtime priority; an errno where that is not allowed."""
     cdef pthread_attr_t attr
     cdef sched_param param
     cdef int code
@@ -79,9 +83,25 @@ cdef int start(Beat* beat) noexcept nogil:
     pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED)
     pthread_attr_setschedpolicy(&attr, SCHED_FIFO)
     pthread_attr_setschedparam(&attr, &param)
-    code = pthread_create(&beat.thread, &attr, beat_main, beat)
+    code = pthread_create(thread, &attr, work, arg)
     pthread_attr_destroy(&attr)
-    return pthread_create(&beat.thread, NULL, beat_main, beat) if code else 0
+    return code
+
+
+cdef int start(Beat* beat) noexcept nogil:
+    """Start the thread, with realtime priority where that is allowed; an errno."""
+    if start_first(&beat.thread, beat_main, beat) == 0:
+        return 0
+    return pthread_create(&beat.thread, NULL, beat_main, beat)
+
+
+def has_priority():
+    """Would a pulse's thread have realtime priority here? Without, a healthy process may be late on a busy computer."""
+    cdef pthread_t thread
+    if start_first(&thread, no_work, NULL):
+        return False
+    pthread_join(thread, NULL)
+    return True
 
 
 cdef class Pulse:
