@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import deque
 
 from emctask.layout import image
+from emctask.partner import SignOfLife
 from nml import clock
 from nml.channel import Channel
 from nml.emc import EMC_IO_STAT
@@ -15,7 +16,6 @@ from nml.emc.tooltable import EMC_TOOL_TABLE
 from nml.message import Command
 
 DONE, EXEC, ERROR = 1, 2, 3
-DEAD_S = 0.85  # host time without a new status after which io counts as gone
 
 
 class IoClient:
@@ -24,6 +24,7 @@ class IoClient:
     def __init__(self, commands: Channel, status: Channel, table: Channel) -> None:
         self._commands = commands
         self._status = status
+        self._sign_of_life = SignOfLife(status)
         self._table = table
         self.status = EMC_IO_STAT()
         self.table = EMC_TOOL_TABLE()
@@ -45,8 +46,7 @@ class IoClient:
     @property
     def alive(self) -> bool:
         """Does io still write its status?"""
-        age = self._status.age()
-        return age is not None and age < DEAD_S
+        return self._sign_of_life.seen()
 
     def send(self, command: Command) -> None:
         """Send a command after those before it."""

@@ -12,6 +12,7 @@ from collections import deque
 from typing import Any
 
 from emctask.layout import Span, image
+from emctask.partner import SignOfLife
 from nml.channel import Channel
 from nml.emc.emcmot import (
     EMCMOT_COMMAND,
@@ -30,7 +31,6 @@ termCond, mode, tolerance."""
 
 BEATS = 5  # signs of life within the time that motion waits for one
 HUNG_S = 3.0  # host time without a cycle after which task gives no more signs of life
-DEAD_S = 0.85  # host time without a new status after which motion counts as gone
 RESERVE = 10  # places of the planner's queue that task leaves free
 
 
@@ -42,6 +42,7 @@ class MotionClient:
         """Host time without a sign of life from task after which motion stops the machine."""
         self._commands = commands
         self._status = status
+        self._sign_of_life = SignOfLife(status)
         self._errors = errors
         self.status = EMCMOT_STATUS()
         self.image = image(self.status)
@@ -70,8 +71,7 @@ class MotionClient:
     @property
     def alive(self) -> bool:
         """Does motion still write its status?"""
-        age = self._status.age()
-        return age is not None and age < DEAD_S
+        return self._sign_of_life.seen()
 
     @property
     def sent(self) -> int:
