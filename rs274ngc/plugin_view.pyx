@@ -3,6 +3,9 @@
 A name is one row of ``READ`` (what it is) and, where functions may set it, of ``WRITE``. Lengths are in program units.
 """
 
+from collections import namedtuple
+from types import SimpleNamespace
+
 from nml.errors import InterpError
 from rs274ngc.canon import AXES
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_named
@@ -21,7 +24,7 @@ from rs274ngc.state cimport PARAMETERS, SPINDLES, WAIT_INPUT, WAIT_PROBE, WAIT_T
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 
-READ_ONLY, GLOBAL, LOOKED_UP, FROM_PYTHON = 1, 2, 8, 32
+READ_ONLY, GLOBAL, LOOKED_UP, FROM_INI, FROM_PYTHON = 1, 2, 8, 16, 32
 """Bits of ``attr`` of a named parameter, as LinuxCNC numbers them."""
 
 
@@ -95,8 +98,10 @@ class NamedValues:
             return NamedValue(name, self._own[name])
         if s.plugin is not None and name in s.plugin.named:
             attr = READ_ONLY | GLOBAL | FROM_PYTHON
+        elif name in PREDEFINED:
+            attr = READ_ONLY | GLOBAL | LOOKED_UP
         else:
-            attr = READ_ONLY | GLOBAL | LOOKED_UP if name in PREDEFINED else GLOBAL
+            attr = READ_ONLY | GLOBAL | FROM_INI if name.startswith("_ini[") else GLOBAL
         return NamedValue(name, get_named(s, name, -1), attr)
 
     def __len__(self):
@@ -171,6 +176,34 @@ class Spindles:
         return n
 
 
+Pose = namedtuple("Pose", "x y z a b c u v w")
+TOOLS_MAX = 1001        # LinuxCNC's greatest tool table
+
+
+class ToolTable:
+    """``self.tool_table``: the tools by index, 0 the one in the spindle; lengths in machine units."""
+
+    def __init__(self, State s):
+        self._state = s
+
+    def __len__(self):
+        return TOOLS_MAX
+
+    def __getitem__(self, int index):
+        if not 0 <= index < TOOLS_MAX:
+            raise IndexError(f"there is no tool table index {index}")
+        tool = self._state.canon.get_external_tool_table(index)
+        return SimpleNamespace(
+            toolno=tool.toolno, pocketno=tool.pocketno, offset=Pose(*tool.offset), diameter=tool.diameter,
+            frontangle=tool.frontangle, backangle=tool.backangle, orientation=tool.orientation,
+        )
+
+
+def tool_offset(State s):
+    """The tool offset that applies, program units."""
+    return Pose(*[s.tool[i] for i in range(9)])
+
+
 def axis_value(name, State s):
     """A name of one axis: current_x, AA_current, u_current, axis_offset_z, origin_offset_x, tool offsets; None: no such name."""
     for prefix, which in (("current_", 0), ("axis_offset_", 1), ("origin_offset_", 2), ("tool_offset_", 3)):
@@ -197,6 +230,8 @@ DEBUG_UNCONDITIONAL = 0x40000000    # the bit of messages that no debug mask sup
 FEED_MODES = {940: UNITS_PER_MINUTE, 930: INVERSE_TIME, 950: UNITS_PER_REVOLUTION}
 READ = {
     "remap_level": remap_level,
+    "tool_offset": tool_offset,
+    "tool_table": ToolTable,
     "call_level": lambda s: len(s.frames) - 1,
     "return_value": lambda s: s.return_value,
     "value_returned": lambda s: int(s.value_returned),

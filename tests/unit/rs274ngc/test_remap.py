@@ -269,6 +269,19 @@ def test_a_function_sees_the_speed_of_each_spindle_and_none_beyond(machine):
     assert messages(canon) == ["100.000000 1.000000"]
 
 
+def test_a_function_sees_the_tools_and_the_offset_that_applies(machine):
+    interp, canon = machine(
+        oword="""
+        def tools(self):
+            tool = self.tool_table[0]
+            same = tool.toolno == self.current_tool and tool.diameter == self.params[5410]
+            return same and tool.offset.z == self.params[5403] and self.tool_offset.x + self.tool_offset.z
+        """
+    )
+    typed(interp, "g43.1 x2 z5", "o<tools> call", "(debug,#<_value>)")
+    assert messages(canon) == ["7.000000"]
+
+
 def test_named_parameters_of_a_level_are_found_by_name_and_say_what_they_are(machine):
     interp, canon = machine(
         oword="""
