@@ -162,6 +162,8 @@ cdef int axis_offset(State s, Block* b, int code) except -1:
     cdef int k
     if s.comp_side != SIDE_OFF and (code == 920 or code == 520):
         return fail(s, "Cannot change axis offsets with cutter radius comp", b.g_at[0])
+    if s.comp_side != SIDE_OFF:
+        return 0        # without a word, as in LinuxCNC
     if code == 920 or code == 520:
         to_machine(s, point)
         for k in range(9):

@@ -87,15 +87,14 @@ class Arc:
 
     def side(self, distance: float) -> Arc:
         """Moved to the left by ``distance``."""
-        radius = self.radius
-        grown = radius - distance if self.left else radius + distance
-        if grown < SMALL:
+        outwards = -distance if self.left else distance
+        if self.radius + outwards < SMALL:
             raise ProfileError("an arc of the profile is smaller than the distance to it")
-        factor = grown / radius
+        start, end = self.start - self.centre, self.end - self.centre
         return replace(
             self,
-            start=self.centre + (self.start - self.centre) * factor,
-            end=self.centre + (self.end - self.centre) * factor,
+            start=self.start + start / abs(start) * outwards,
+            end=self.end + end / abs(end) * outwards,
         )
 
     def heading(self, point: complex) -> complex:
@@ -267,11 +266,19 @@ def at_distance(profile: Sequence[Segment], distance: float) -> list[Segment]:
 
 def touching(before: Segment, after: Segment) -> complex:
     """Where two pieces meet that go on in one direction but for rounding: on the first of them, if anywhere near."""
-    points = [point for point in intersections(before, after) if abs(point - after.start) < REACH]
+    points = [point for point in intersections(before, rounded_off(after)) if abs(point - after.start) < REACH]
     held = [point for point in points if before.holds(point)]
     if held:
         return min(held, key=lambda point: point.real)
     return min(points, key=lambda point: abs(point - after.start), default=after.start)
+
+
+def rounded_off(segment: Segment) -> Segment:
+    """The piece; an arc with the radius that it has at its end, where it is away from what the start was rounded to."""
+    if isinstance(segment, Line):
+        return segment
+    factor = abs(segment.end - segment.centre) / segment.radius
+    return replace(segment, start=segment.centre + (segment.start - segment.centre) * factor)
 
 
 def meeting(moved: list[Segment], segment: Segment) -> complex | None:

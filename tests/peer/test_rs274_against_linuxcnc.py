@@ -371,6 +371,32 @@ AWKWARD = {
     "a spline without a feed per turn": """\
         g95
         g5.1 x1 y1 i1 j2""",
+    "giving up G92 beside a compensated path": """\
+        g92 x1
+        g41.1 d.1
+        g92.1
+        (debug,#5210 #5211)
+        g92.3
+        g1 x5""",
+    "a word that G5.3 does not use": "g5.3 p1",
+    "a lathe profile whose lines and arcs nearly touch": """\
+        g18 g8 g0 x15 z4
+        o1 sub
+          g0 x.202 z3.041
+          g2 x1.081 z.919 i3 k0
+          g1 x3 z-1
+          g1 z-4
+          x2.268 z-5.268
+          g2 x2 z-6.268 i1.73205 k-1
+          g1 z-6.732
+          g2 x4 z-8.732 i2 k0
+          g1 x4.5
+          g3 x6.285 z-12.982 i0 k-2.5
+          g2 z-19.982 i3.57071 k-3.5
+          g1 x10 a.2
+        o1 endsub
+        g71.2 q1 x15 z3.041 d.51 i.5 r.3
+        g70 q1 x15 z3.041 e0 d.5 p2""",
     "words that some codes do not mind": """\
         m3 s100
         g33 z1 k1 e1
