@@ -237,6 +237,12 @@ cdef class Mapping:
         return self.fd >= 0
 
     @property
+    def current(self) -> bool:
+        """Whether this process is attached to the segment that others find; ``halrun -U`` takes its name away."""
+        cdef struct_stat st
+        return self.fd >= 0 and fstat(self.fd, &st) == 0 and st.st_nlink > 0
+
+    @property
     def address(self) -> int:
         return <size_t>self.at
 

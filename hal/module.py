@@ -69,10 +69,10 @@ _doors: dict[tuple[int, str], Hal] = {}
 
 
 def door() -> Hal:
-    """This process's attachment to the HAL of its namespace, made at first use and again after a fork."""
+    """This process's attachment to the HAL of its namespace, made at first use, after a fork and after its end."""
     key = os.getpid(), namespace()
     hal = _doors.get(key)
-    if hal is None or not hal.segment.attached:
+    if hal is None or not hal.segment.current:
         _doors.clear()
         hal = _doors[key] = Hal()
     return hal

@@ -9,10 +9,12 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from nml import namespace
 
@@ -69,14 +71,15 @@ class Run:
         environment["HOME"] = str(ini.parent)
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), environment.get("PYTHONPATH")]))
         self.namespace = environment[namespace.VARIABLE]
+        # Files, which a talkative display cannot fill as it could a pipe
+        self._said = tempfile.TemporaryFile("w+"), tempfile.TemporaryFile("w+")  # noqa: SIM115  closed by finish
         self.process = subprocess.Popen(
             [sys.executable, "-m", "linuxcnc.launcher", str(ini), "--speed", str(speed), *options],
             env=environment,
             cwd=ini.parent,
             stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
+            stdout=self._said[0],
+            stderr=self._said[1],
             start_new_session=True,
         )
         self._output: tuple[str, str] | None = None
@@ -99,8 +102,15 @@ class Run:
     def finish(self, timeout: float = 120.0) -> int:
         """Wait for its end; the exit code."""
         if self._output is None:
-            self._output = self.process.communicate(timeout=timeout)
+            self.process.wait(timeout)
+            self._output = self._read(self._said[0]), self._read(self._said[1])
         return self.process.returncode
+
+    @staticmethod
+    def _read(file: IO[str]) -> str:
+        file.seek(0)
+        with file:
+            return file.read()
 
     def stop(self) -> int:
         """End it as Ctrl-C or a service manager would."""

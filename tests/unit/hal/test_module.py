@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import pytest
 
 import hal
 from hal.core import Hal
+from hal.halrun import unload_everything
 from hal.module import door
 
 
@@ -246,3 +249,15 @@ def test_a_stream_is_a_lossless_queue(comp: hal.component) -> None:
     writer.close()
     with pytest.raises(hal.error, match="no stream"):
         hal.stream(comp, 77)
+
+
+def test_a_program_that_was_there_before_the_machine_sees_the_components_of_the_machine():
+    assert not hal.component_exists("later")
+    assert unload_everything() == 0
+    other = "import hal; c = hal.component('later'); c.ready(); print(flush=True); input()"
+    command = [sys.executable, "-c", other]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        assert hal.component_is_ready("later")
+        process.communicate(b"\n")
