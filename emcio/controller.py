@@ -166,8 +166,9 @@ class IoController:
             self._complain(str(error))
 
     def _complain(self, text: str) -> None:
+        """Tell the operator; by the number task finds out which order the text belongs to."""
         self._failed = True
-        self.channels.errors.write(EMC_OPERATOR_ERROR(error=text[:254]))
+        self.channels.errors.write(EMC_OPERATOR_ERROR(id=-self.status.echo_serial_number, error=text[:254]))
 
     def _nothing(self, command: Message) -> None:
         """A command that needs no action."""

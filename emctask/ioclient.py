@@ -6,6 +6,7 @@ toolCmd holds a single message, so a command that is not yet taken must not be o
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 
 from emctask.layout import image
 from emctask.partner import SignOfLife
@@ -16,6 +17,7 @@ from nml.emc.tooltable import EMC_TOOL_TABLE
 from nml.message import Command
 
 DONE, EXEC, ERROR = 1, 2, 3
+ORDERS_KEPT = 64
 
 
 class IoClient:
@@ -30,7 +32,11 @@ class IoClient:
         self.table = EMC_TOOL_TABLE()
         self.table_changed = False
         self.known = False
-        self._line: deque[Command] = deque()
+        self.order: Callable[[], int] = lambda: 0
+        """Serial number of the order that is being carried out."""
+        self._line: deque[tuple[Command, int]] = deque()
+        self._orders: deque[tuple[int, int]] = deque(maxlen=ORDERS_KEPT)
+        """Serial numbers of the commands sent last, and of the orders that they belong to."""
         self._serial = 0
         self._base = int(clock.host_now() * 1000) & 0x3FFFFFFF
 
@@ -50,13 +56,13 @@ class IoClient:
 
     def send(self, command: Command) -> None:
         """Send a command after those before it."""
-        self._line.append(command)
+        self._line.append((command, self.order()))
         self._advance()
 
     def send_first(self, *commands: Command) -> None:
         """Drop what has not been sent yet and send these instead: an abort, an E-stop."""
         self._line.clear()
-        self._line.extend(commands)
+        self._line.extend((command, self.order()) for command in commands)
         self._advance()
 
     @property
@@ -66,10 +72,15 @@ class IoClient:
 
     def _advance(self) -> None:
         while self._line and self.echoed_last:
-            command = self._line.popleft()
+            command, order = self._line.popleft()
             self._serial += 1
             command.serial_number = self._base + self._serial
+            self._orders.append((command.serial_number, order))
             self._commands.write(command)
+
+    def order_of(self, serial: int) -> int:
+        """The order that io's command of this number belongs to; 0: to none."""
+        return dict(self._orders).get(serial, 0)
 
     def reconnected(self) -> None:
         """Io was gone and is back: what was on the way to it is lost."""

@@ -56,6 +56,15 @@ class OperatorLine:
         {11: self.error, 12: self.text, 13: self.display}.get(error.kind, self.error)(text)
         self.serial = serial
 
+    def from_io(self, order_of: Callable[[int], int]) -> None:
+        """Io tells the operator by itself; who waits for the result of the order behind it is told, too.
+
+        Io's texts carry the number of its command, below 0; ``order_of`` knows the order of each.
+        """
+        while (message := self._channel.read()) is not None:
+            if isinstance(message, EMC_OPERATOR_ERROR) and message.id < 0 and self.also_tell is not None:
+                self.also_tell(EMC_OPERATOR_ERROR(id=order_of(-message.id), error=message.error))
+
     def _write(self, message: OperatorMessage) -> None:
         if self.also_tell is not None:
             self.also_tell(message)

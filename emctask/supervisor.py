@@ -30,6 +30,7 @@ class Supervisor:
         """React to whatever changed since the last cycle."""
         task = self._task
         self._partners()
+        task.operator.from_io(task.io.order_of)
         for error in task.motion.errors():
             order = task.results.refused_by_motion(error.echo_serial_number)
             task.operator.from_motion(error, task.canon.places, order)

@@ -100,6 +100,7 @@ class Task:
         self.supervisor = Supervisor(self)
         self.results = Results(self, results)
         operator.also_tell = self.results.tell
+        io.order = lambda: operator.serial
         self._waiting: deque[Message] = deque()
         self._expected: Expectation | None = None
 

@@ -150,7 +150,7 @@ def _other_findings(ini: Path, said: list[str]) -> list[str]:
     from linuxcnc.check import findings
 
     named = {line.partition(":")[0] for line in said}
-    return [finding for finding in findings(ini) if finding.partition(":")[0] not in named]
+    return [finding for finding in findings(ini.absolute()) if finding.partition(":")[0] not in named]
 
 
 def _readable(path: Path) -> None:

@@ -114,6 +114,12 @@ def test_the_last_configuration_starts_again(tmp_path):
     assert launcher(tmp_path, "-l").returncode == 7
 
 
+def test_a_file_that_is_named_from_the_folder_is_complained_of_once(tmp_path):
+    run = launcher(tmp_path, "none.ini")
+    (line,) = run.stderr.splitlines()
+    assert (run.returncode, line) == (1, f"{ROOT}/none.ini: cannot read the INI file: No such file or directory")
+
+
 def test_without_a_last_configuration_one_line_says_so(tmp_path):
     answer = launcher(tmp_path, "-l")
     assert answer.returncode == 1

@@ -69,6 +69,19 @@ def test_a_program_that_comes_to_a_wrong_line_has_failed(mill, tmp_path):
     assert mill.position[0] == pytest.approx(20.0)
 
 
+def test_what_io_says_of_an_order_belongs_to_its_result(mill, tmp_path):
+    (tmp_path / "mill_mm.tbl").write_text("T1 P1 Zx\n")
+
+    async def reload():
+        async with Machine() as one:
+            return await one.load_tool_table()
+
+    result = asyncio.run(reload())
+    assert result.outcome is Outcome.FAILED
+    (message,) = result.messages
+    assert "mill_mm.tbl:1: 'Zx' is no word of a tool table" in message
+
+
 MANY: list[tuple[Callable[[linuxcnc.command], None], Outcome, str]] = [
     (lambda command: command.feedrate(0.5), Outcome.DONE, ""),
     (lambda command: command.text_msg("hello"), Outcome.DONE, "hello"),
