@@ -127,11 +127,11 @@ cdef void estimate_velocity(Encoder* s, double scale) noexcept nogil:
         s.seen_ns = s.edge_ns
     else:
         bound = 1.0 / (fabs(scale) * (s.time_ns - s.seen_ns) * 1e-9) if s.time_ns > s.seen_ns else INFINITY
-        if fabs(at(s.velocity).f) > bound:
+        if bound < at(s.min_speed_estimate).f:
+            at(s.velocity).f = 0.0
+            s.counts_seen = 0
+        elif fabs(at(s.velocity).f) > bound:
             at(s.velocity).f = bound if at(s.velocity).f > 0.0 else -bound
-            if bound < at(s.min_speed_estimate).f:
-                at(s.velocity).f = 0.0
-                s.counts_seen = 0
     at(s.velocity_rpm).f = at(s.velocity).f * 60.0
 
 

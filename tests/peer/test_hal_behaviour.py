@@ -124,6 +124,16 @@ CASES = {
         "b:e.phase-A b:e.phase-B b:e.phase-Z", "s:e.counts f:e.position b:e.index-enable",
         turning(), "e.position-scale=4 e.index-enable=1",
     ),
+    "encoder-speed": Case(
+        "encoder names=e", "encoder.update-counters encoder.capture-position",
+        "b:e.phase-A", "f:e.velocity f:e.position-interpolated f:e.velocity-rpm",
+        presses(25), "e.min-speed-estimate=1 e.counter-mode=1", 1e-4,
+    ),
+    "encoder-standstill": Case(  # with a scale LinuxCNC 2.9's takes min-speed-estimate for counts / scale^2
+        "encoder names=e", "encoder.update-counters encoder.capture-position",
+        "b:e.phase-A", "f:e.velocity f:e.velocity-rpm",
+        presses(25), "e.min-speed-estimate=60 e.counter-mode=1", 1e-4,
+    ),
     "stepgen-velocity": Case(
         "stepgen step_type=0 ctrl_type=v", "stepgen.update-freq stepgen.make-pulses stepgen.capture-position",
         "f:stepgen.0.velocity-cmd", "b:stepgen.0.step b:stepgen.0.dir s:stepgen.0.counts f:stepgen.0.position-fb",
