@@ -19,7 +19,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-COMMANDS = {"test.hal": ["halrun", "-f", "test.hal"], "test.sh": ["bash", "-x", "test.sh"], "test": ["./test"]}
+PROGRAM = ["bash", "-c", '"$@"', "bash"]
+"""Before a program and its arguments: a shell also runs what is executable and names no interpreter."""
+
+COMMANDS = {
+    "test.hal": ["halrun", "-f", "test.hal"],
+    "test.sh": ["bash", "-x", "test.sh"],
+    "test": [*PROGRAM, "./test"],
+}
 HEADERS = "/usr/include/linuxcnc"
 GRACE_S = 5.0  # between SIGTERM and SIGKILL
 
@@ -99,9 +106,8 @@ def execute(folder: Path, env: dict[str, str], patience: float) -> str:
 def judged(folder: Path, env: dict[str, str]) -> str:
     """Compare the result: why it is wrong, or nothing."""
     if (folder / "checkresult").exists():
-        command = ["./checkresult", str(folder / "result")]
-        if not os.access(folder / "checkresult", os.X_OK):
-            command.insert(0, "bash")
+        before = PROGRAM if os.access(folder / "checkresult", os.X_OK) else ["bash"]
+        command = [*before, "./checkresult", str(folder / "result")]
         done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
         return f"checkresult: exit code {done.returncode}\n{done.stdout}{done.stderr}" if done.returncode else ""
     if not (folder / "expected").exists():

@@ -25,6 +25,8 @@ SUITE: dict[str, str] = {
     "shell/off/skip": "",
     "program/own/test": '#!/bin/sh\n[ -n "$PYEMC_NAMESPACE" ] && [ -n "$TEST_DIR" ] && pwd\n',
     "program/own/checkresult": "grep -q program/own $1\n",
+    "program/bare/test": "echo no interpreter is named\n",
+    "program/bare/checkresult": "grep -q interpreter $1\n",
     "program/slow/test": "#!/bin/sh\nsleep 1000\n",
 }
 
@@ -35,7 +37,7 @@ def suite(tmp_path: Path) -> Path:
         path = tmp_path / "tests" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-        if text.startswith("#!"):
+        if text.startswith("#!") or "/bare/" in name:
             path.chmod(0o755)
     return tmp_path / "tests"
 
@@ -52,6 +54,7 @@ def test_each_folder_gets_its_word_and_a_failure_its_reason(suite: Path) -> None
     words = dict(reversed(line.split()) for line in lines if line and not line.startswith(" ") and "," not in line)
     assert words == {
         "hal/gate": "pass",
+        "program/bare": "pass",
         "program/own": "pass",
         "shell/known": "xfail",
         "shell/off": "skip",
@@ -59,7 +62,7 @@ def test_each_folder_gets_its_word_and_a_failure_its_reason(suite: Path) -> None
         "shell/wrong": "fail",
     }, done.stdout + done.stderr
     assert "      -two" in lines
-    assert lines[-1] == "3 pass, 1 fail, 1 xfail, 1 skip"
+    assert lines[-1] == "4 pass, 1 fail, 1 xfail, 1 skip"
     assert done.returncode == 1
 
 
