@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, sin, tau
+from operator import add
 from typing import Any
 
 from nml.errors import ConfigError, InterpError
@@ -103,20 +104,21 @@ def strerror(result: int) -> str:
     return _last_error if result > MIN_ERROR else ""
 
 
-def calc_extents(*lists: Iterable[Sequence[Any]]) -> tuple[list[float], list[float], list[float], list[float]]:
+def calc_extents(*lists: Sequence[Sequence[Any]]) -> tuple[list[float], list[float], list[float], list[float]]:
     """Lowest and highest X, Y, Z of moves, as they are and with their tool offsets left out.
 
     A move is (line, start, end, ..., tool offset), as LinuxCNC's displays keep it.
     """
     low, high = [NOWHERE] * 3, [-NOWHERE] * 3
     low_bare, high_bare = [NOWHERE] * 3, [-NOWHERE] * 3
-    for moves in lists:
-        for _, start, end, *_, offset in moves:
-            for axis in range(3):
-                for value in (start[axis], end[axis]):
-                    low[axis], high[axis] = min(low[axis], value), max(high[axis], value)
-                    bare = value + offset[axis]
-                    low_bare[axis], high_bare[axis] = min(low_bare[axis], bare), max(high_bare[axis], bare)
+    for moves in filter(None, lists):
+        for axis in range(3):
+            offsets = [move[-1][axis] for move in moves]
+            for place in (1, 2):
+                values = [move[place][axis] for move in moves]
+                bare = list(map(add, values, offsets))
+                low[axis], high[axis] = min(low[axis], min(values)), max(high[axis], max(values))
+                low_bare[axis], high_bare[axis] = min(low_bare[axis], min(bare)), max(high_bare[axis], max(bare))
     return low, high, low_bare, high_bare
 
 

@@ -28,13 +28,24 @@ class Translated:
     rotation_xy = 0.0
     rotation_cos, rotation_sin = 1.0, 0.0
 
-    def rotate_and_translate(self, *point: float) -> tuple[float, ...]:
+    def rotate_and_translate(
+        self, x: float, y: float, z: float, a: float, b: float, c: float, u: float, v: float, w: float
+    ) -> tuple[float, ...]:
         """Nine program coordinates as machine coordinates."""
-        x, y, *rest = (value + getattr(self, f"g92_offset_{axis}") for axis, value in zip(AXES, point, strict=True))
+        x += self.g92_offset_x
+        y += self.g92_offset_y
         if self.rotation_xy:
             x, y = x * self.rotation_cos - y * self.rotation_sin, x * self.rotation_sin + y * self.rotation_cos
-        return tuple(
-            value + getattr(self, f"g5x_offset_{axis}") for axis, value in zip(AXES, (x, y, *rest), strict=True)
+        return (
+            x + self.g5x_offset_x,
+            y + self.g5x_offset_y,
+            z + self.g92_offset_z + self.g5x_offset_z,
+            a + self.g92_offset_a + self.g5x_offset_a,
+            b + self.g92_offset_b + self.g5x_offset_b,
+            c + self.g92_offset_c + self.g5x_offset_c,
+            u + self.g92_offset_u + self.g5x_offset_u,
+            v + self.g92_offset_v + self.g5x_offset_v,
+            w + self.g92_offset_w + self.g5x_offset_w,
         )
 
     def straight_traverse(self, *point: float) -> None:

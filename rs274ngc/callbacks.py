@@ -7,6 +7,7 @@ questions (``get_tool``, ``get_axis_mask``, ...) have defaults. Module ``gcode``
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any
 
 from rs274ngc.canon import CANON_UNITS_INCHES, Tool
@@ -25,16 +26,33 @@ M_FIELDS = {"stopping": 1, "spindle": 2, "toolchange": 3, "mist": 4, "flood": 5,
 class LineCode:
     """The codes in force before a line, and its number: what ``next_line`` is given."""
 
-    sequence_number = 0
+    __slots__ = ("_settings", "gcodes", "mcodes", "sequence_number")
 
     def __init__(self, interp: Interpreter) -> None:
-        self.gcodes, self.mcodes = interp.active_g_codes(), interp.active_m_codes()
-        settings = interp.active_settings()
-        self.feed_rate, self.speed = settings[1], settings[2]
-        for name, place in G_FIELDS.items():
-            setattr(self, name, self.gcodes[place])
-        for name, place in M_FIELDS.items():
-            setattr(self, name, self.mcodes[place])
+        self.sequence_number = 0
+        self.gcodes, self.mcodes, self._settings = (
+            interp.active_g_codes(), interp.active_m_codes(), interp.active_settings(),
+        )  # fmt: skip
+
+    @property
+    def feed_rate(self) -> float:
+        return self._settings[1]
+
+    @property
+    def speed(self) -> float:
+        return self._settings[2]
+
+
+def _code(table: str, place: int) -> property:
+    """The code of one modal group."""
+    of_line = attrgetter(table)
+    return property(lambda line: of_line(line)[place])
+
+
+for _name, _place in G_FIELDS.items():
+    setattr(LineCode, _name, _code("gcodes", _place))
+for _name, _place in M_FIELDS.items():
+    setattr(LineCode, _name, _code("mcodes", _place))
 
 
 class CallbackCanon(OfflineCanon):
@@ -100,7 +118,9 @@ class CallbackCanon(OfflineCanon):
         """Nine coordinates in inches and degrees."""
         if self.units == CANON_UNITS_INCHES:
             return values
-        return tuple(value if 3 <= axis <= 5 else value / MM_PER_INCH for axis, value in enumerate(values))
+        x, y, z, a, b, c, u, v, w = values
+        mm = MM_PER_INCH
+        return x / mm, y / mm, z / mm, a, b, c, u / mm, v / mm, w / mm
 
     def length(self, value: float) -> float:
         return value if self.units == CANON_UNITS_INCHES else value / MM_PER_INCH
