@@ -166,7 +166,7 @@ KEYS: tuple[Key, ...] = (
         ("CENTER_ARC_RADIUS_TOLERANCE_INCH", REAL, LANGUAGE, "how much an arc's radii may differ", {"unit": "inch"}),
         ("CENTER_ARC_RADIUS_TOLERANCE_MM", REAL, LANGUAGE, "how much an arc's radii may differ", {"unit": "mm"}),
         ("ORIENT_OFFSET", REAL, LANGUAGE, "added to the angle of M19", {"default": "0", "unit": "deg"}),
-        ("FEATURES", INTEGER, LANGUAGE, "bits for the next six entries, the first is 1", {"default": "12"}),
+        ("FEATURES", INTEGER, NOBODY, "old form of the next six entries; without effect here", {}),
         ("RETAIN_G43", BOOLEAN, LANGUAGE, "keep G43 on through tool changes", {"default": "no"}),
         ("OWORD_NARGS", BOOLEAN, LANGUAGE, "#<n_args> in subroutines", {"default": "no"}),
         ("INI_VARS", BOOLEAN, LANGUAGE, "#<_ini[SECTION]KEY>", {"default": "yes"}),

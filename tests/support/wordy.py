@@ -369,7 +369,7 @@ class Wordy:
         if self.chance(0.3):
             return [*words, f"{one}{radius:.3f}"]
         i = round(self.random.uniform(-radius, radius), 3)
-        j = round((radius**2 - i**2) ** 0.5, 3)
+        j = round(max(0.0, radius**2 - i**2) ** 0.5, 3)
         turn = self.random.choice(((2 * i, 2 * j), (i - j, j + i), (i + j, j - i)))
         return [*words, f"{first}{turn[0]:.3f}", f"{second}{turn[1]:.3f}", f"{one}{i}", f"{two}{j}"]
 

@@ -179,3 +179,19 @@ def test_g92_outlives_the_program_unless_the_ini_file_forbids_it(tmp_path, monke
     for _ in range(2):
         assert rs274.main([*options, "part.ngc"]) == 0
         assert f"{active:.6f} {first:.6f}" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("ini", "shown"),
+    [("OWORD_NARGS = 1", ["3.000000", "1.000000", "0.000000"]), ("FEATURES = 2", ["######"] * 3)],
+    ids=["switched on", "not switched on"],
+)
+def test_a_subroutine_can_ask_how_many_arguments_it_got(tmp_path, monkeypatch, capfd, ini, shown):
+    monkeypatch.chdir(tmp_path)
+    calls = "o1 call [4] [5] [6]\no1 call [7]\no1 call\n"
+    (tmp_path / "part.ngc").write_text(f"o1 sub\n(print,#<n_args> #2 #30)\no1 endsub\n#2=9 #30=9\n{calls}m2\n")
+    (tmp_path / "machine.ini").write_text(f"[RS274NGC]\n{ini}\n")
+    assert rs274.main(["-g", "-i", "machine.ini", "part.ngc"]) == 0
+    printed = [line for line in capfd.readouterr().out.splitlines() if line.endswith("0.000000")]
+    second = ["5.000000", "0.000000", "0.000000"]
+    assert printed == [f"{number} {other} 0.000000" for number, other in zip(shown, second, strict=True)]
