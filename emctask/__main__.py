@@ -71,6 +71,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
     _wait_until(lambda: motion.poll() or motion.known, "motion does not answer: is motmod loaded, its thread started?")
     _wait_until(lambda: io.poll() or io.known, "io does not answer: is it running?")
     configure_motion(motion, config)
+    errors = channel("emcError")
     task = Task(
         config,
         ini,
@@ -78,7 +79,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
         motion,
         io,
         StatusWriter(config, channel("emcStatus")),
-        OperatorLine(channel("emcError")),
+        OperatorLine(errors, Channel.connect(errors.line, nml.observer("emcError"))),
         channel("emcResults"),
         pins,
     )

@@ -24,8 +24,9 @@ class OperatorLine:
     and ``also_tell`` gets the text for those who wait for that command's result.
     """
 
-    def __init__(self, channel: Channel) -> None:
+    def __init__(self, channel: Channel, everybodys: Channel) -> None:
         self._channel = channel
+        self._everybodys = everybodys
         self.serial = 0
         self.also_tell: Callable[[OperatorMessage], None] | None = None
 
@@ -61,7 +62,7 @@ class OperatorLine:
 
         Io's texts carry the number of its command, below 0; ``order_of`` knows the order of each.
         """
-        while (message := self._channel.read()) is not None:
+        while (message := self._everybodys.read()) is not None:
             if isinstance(message, EMC_OPERATOR_ERROR) and message.id < 0 and self.also_tell is not None:
                 self.also_tell(EMC_OPERATOR_ERROR(id=order_of(-message.id), error=message.error))
 
@@ -74,7 +75,8 @@ class OperatorLine:
             log.warning("a text for the operator was lost: %s", error)
 
     def close(self) -> None:
-        """Close the channel."""
+        """Close the channels."""
+        self._everybodys.close()
         self._channel.close()
 
 
