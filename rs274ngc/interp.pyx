@@ -387,7 +387,7 @@ cdef class Interpreter:
 
     def end_subprogram(self):
         """M99, for its handler: False if the program is over."""
-        if not self.state.fanuc_subs:
+        if self.call_level and not self.state.fanuc_subs:
             fail(self.state, "DISABLE_FANUC_STYLE_SUB set in INI file, but found m99")
         return self.flow.end_subprogram()
 

@@ -195,3 +195,15 @@ def test_a_subroutine_can_ask_how_many_arguments_it_got(tmp_path, monkeypatch, c
     printed = [line for line in capfd.readouterr().out.splitlines() if line.endswith("0.000000")]
     second = ["5.000000", "0.000000", "0.000000"]
     assert printed == [f"{number} {other} 0.000000" for number, other in zip(shown, second, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("program", "status"), [("g0 x1\nm99\ng0 x2\n", 0), ("o1 sub\nm99\no1 endsub\no1 call\nm2\n", 1)], ids=["main", "sub"]
+)
+def test_without_fanuc_subprograms_m99_ends_the_main_program_only(tmp_path, monkeypatch, capfd, program, status):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.ngc").write_text(program)
+    (tmp_path / "machine.ini").write_text("[RS274NGC]\nDISABLE_FANUC_STYLE_SUB = 1\n")
+    assert rs274.main(["-g", "-i", "machine.ini", "part.ngc"]) == status
+    output = capfd.readouterr()
+    assert ("PROGRAM_END" in output.out, "but found m99" in output.err) == (status == 0, status == 1)
