@@ -185,6 +185,7 @@ KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str], re.Pattern[str]], ...]
         ("overrides after G76 while M49 or M50 P0 is in force", r"(EN|DIS)ABLE_FEED_OVERRIDE", "", "g76"),
         ("a word twice", "", r"Multiple [pq@^] words", ""),
         ("M98 without P beyond a search", "Found 'm98' code with no P-word", "", "m98"),
+        ("a comment left open, met by a search", "(Unclosed|Nested) comment found", "", "m98"),
         ("$0 with M51", r"Invalid spindle \(\$\) number in M51", "", r"\$"),
         ("$ with G95 or G97", r"\$ \(spindle selection\) word with no", "", r"\$"),
         ("G5.2 under compensation", "", "Cannot convert spline with cutter radius compensation", r"g4[12].*g5\.2"),

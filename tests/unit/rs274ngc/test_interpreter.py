@@ -198,7 +198,9 @@ def test_a_subroutine_can_ask_how_many_arguments_it_got(tmp_path, monkeypatch, c
 
 
 @pytest.mark.parametrize(
-    ("program", "status"), [("g0 x1\nm99\ng0 x2\n", 0), ("o1 sub\nm99\no1 endsub\no1 call\nm2\n", 1)], ids=["main", "sub"]
+    ("program", "status"),
+    [("g0 x1\nm99\ng0 x2\n", 0), ("o1 sub\nm99\no1 endsub\no1 call\nm2\n", 1)],
+    ids=["main", "sub"],
 )
 def test_without_fanuc_subprograms_m99_ends_the_main_program_only(tmp_path, monkeypatch, capfd, program, status):
     monkeypatch.chdir(tmp_path)
