@@ -18,6 +18,7 @@ from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND, TP_TERM_STOP
 cdef enum:
     MOTION_TOOL_CHANGE = 4
     ARC_BLEND_SPANS = 8
+    PROBES = 8                   # parts of a blend with an arc between which its distance from the moves is measured
 
 cdef double TANGENT = 1e-11          # difference of unit tangents that needs no blend
 cdef double EXACT_KINK = 0.02        # the same in exact-path mode: sharper corners are stops
@@ -120,27 +121,35 @@ cdef double _trim_for_speed(
 
 
 cdef double _within(const Segment* a, const Segment* b, double ratio, double trim, double tolerance) noexcept nogil:
-    """Shrink the trim until the middle of the blend lies within the tolerance of the corner."""
-    cdef double q[AXES]
+    """Shrink the trim until the blend lies within the tolerance of the moves, in its middle and on either side of it."""
     cdef double deviation
-    cdef int i, step
+    cdef int step, k
     for step in range(20):
-        position(a, a.length - 0.25 * trim, q)
-        for i in range(AXES):
-            q[i] -= 2.0 * b.start[i]
-        deviation = _deviation(b, 0.25 * ratio * trim, q)
+        deviation = 0.0
+        for k in range(1, PROBES):
+            deviation = fmax(deviation, _deviation(a, b, ratio, trim, 2.0 * trim * k / PROBES))
         if deviation <= tolerance:
             return trim
         trim *= fmax(0.5, 0.98 * tolerance / deviation)
     return 0.0
 
 
-cdef double _deviation(const Segment* b, double s2, double* q) noexcept nogil:
+cdef double _deviation(const Segment* a, const Segment* b, double ratio, double trim, double u) noexcept nogil:
+    """Distance of the blend at `u` from the place that is as far along the moves themselves."""
+    cdef double q[AXES]
     cdef double p[AXES]
+    cdef double part = 0.25 * u * u / trim
     cdef int i
-    position(b, s2, p)
+    position(a, a.length - trim + u - part, q)
+    position(b, ratio * part, p)
     for i in range(AXES):
-        q[i] += p[i]
+        q[i] += p[i] - b.start[i]
+    if u <= trim:
+        position(a, a.length - trim + u, p)
+    else:
+        position(b, ratio * (u - trim), p)
+    for i in range(AXES):
+        q[i] -= p[i]
     return _length(q)
 
 

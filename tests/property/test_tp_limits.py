@@ -10,15 +10,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from emcmot.tp.planner import Planner
-from emcmot.tp.verifier import Arc, Line, verify
+from tests.support.planned import Job
 
-DT = 0.001
-ROUNDING = 1 + 1e-6
-COMPARED = 400  # positions of a job that are compared with its path
 EXAMPLES = int(os.environ.get("PYEMC_EXAMPLES", "10"))  # of each property; hundreds find more
 SETTINGS = settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 KINDS = pytest.mark.parametrize("jerk", [False, True], ids=["acceleration", "jerk"])
+STANDING = 8000  # periods in which any job comes to rest
 AT_LAST = (("reverse", False), ("resume",), ("feed_hold", False), ("feed_scale", 1.0), ("vel_limit", 0.0))
 
 coordinate = st.one_of(st.floats(-8, 8), st.integers(-4, 4).map(float), st.integers(-3, 3).map(lambda k: k * 0.001))
@@ -53,60 +50,11 @@ command = st.tuples(
 )
 
 
-class Job:
-    """Moves given to a planner with limits, and the path that they stand for."""
-
-    def __init__(self, jerk, limits, tolerance, feed):
-        self.planner, self.limits, self.tolerance, self.feed = Planner(DT, 500), limits, tolerance, feed
-        self.jerk = jerk
-        for axis, values in enumerate(limits):
-            self.planner.set_limits(axis, *values)
-        self.planner.limit_jerk(jerk)
-        self.path, self.at = [], np.zeros(9)
-
-    def add(self, end, turn):
-        end9 = np.zeros(9)
-        end9[: len(end)] = end
-        options = {"tolerance": self.tolerance, "vel_max": self.feed * 2, "id": len(self.path) + 1}
-        if turn is None or np.hypot(*(end9[:2] - self.at[:2])) < 1e-3:
-            assert self.planner.add_line(end9, self.feed, **options)
-            if not np.array_equal(self.at, end9):
-                self.path.append(Line(self.at, end9))
-        else:
-            center = np.array([*(self.at[:2] + end9[:2]) / 2, self.at[2]])
-            assert self.planner.add_arc(end9, center, (0, 0, 1), turn, self.feed, **options)
-            self.path.append(Arc(self.at, end9, center, np.array([0.0, 0, 1]), turn))
-        self.at = end9
-
-    def come_to_rest(self):
-        self.planner.pause()
-        return self.planner.step(8000)
-
-    def check(self, positions):
-        assert self.planner.status()["done"]
-        if not self.path:
-            return
-        rows = [*self.limits, *[(1.0, 1.0, 1.0)] * (9 - len(self.limits))]
-        vmax, amax, jmax = (np.array(column) for column in zip(*rows, strict=True))
-        stride = max(1, len(positions) // COMPARED)
-        report = verify(
-            positions, self.path, vmax, amax, DT, self.tolerance, stride, jmax if self.jerk else None
-        )  # fmt: skip
-        assert report.worst_velocity <= ROUNDING
-        assert report.worst_acceleration <= ROUNDING
-        assert report.worst_jerk <= ROUNDING
-        assert report.deviation <= self.tolerance + 1e-6
-
-    def check_to_the_end(self, positions):
-        self.check(positions)
-        assert np.array_equal(self.planner.status()["pos"], self.at)
-
-
 @KINDS
 @SETTINGS
 @given(moves=st.lists(st.tuples(point, turn), min_size=1, max_size=20), limits=limits, tolerance=tolerance, feed=feed)
 def test_any_chain_of_moves_keeps_every_limit_and_arrives(jerk, moves, limits, tolerance, feed):
-    job = Job(jerk, limits, tolerance, feed)
+    job = Job(limits, tolerance, feed, jerk)
     for move in moves:
         job.add(*move)
     job.check_to_the_end(job.planner.run_to_end(300.0))
@@ -121,14 +69,15 @@ def test_any_chain_of_moves_keeps_every_limit_and_arrives(jerk, moves, limits, t
     feed=feed,
 )
 def test_commands_at_any_instant_break_nothing(jerk, moves, commands, limits, feed):
-    job = Job(jerk, limits, 0.02, feed)
+    job = Job(limits, 0.02, feed, jerk)
     for move in moves:
         job.add(*move)
     parts = []
     for periods, (name, *arguments) in commands:
         parts.append(job.planner.step(periods))
         getattr(job.planner, name)(*arguments)
-    parts.append(job.come_to_rest())
+    job.planner.pause()
+    parts.append(job.planner.step(STANDING))
     for name, *arguments in AT_LAST:
         getattr(job.planner, name)(*arguments)
     parts.append(job.planner.run_to_end(300.0))
@@ -143,7 +92,7 @@ def test_commands_at_any_instant_break_nothing(jerk, moves, commands, limits, fe
     tolerance=tolerance,
 )
 def test_moves_that_arrive_late_are_joined_without_a_jolt(jerk, moves, limits, tolerance):
-    job, parts = Job(jerk, limits, tolerance, 60.0), []
+    job, parts = Job(limits, tolerance, 60.0, jerk), []
     for end, turn, periods in moves:
         job.add(end, turn)
         parts.append(job.planner.step(periods))
@@ -159,7 +108,7 @@ def test_moves_that_arrive_late_are_joined_without_a_jolt(jerk, moves, limits, t
     periods=st.integers(1, 1500),
 )
 def test_an_abort_at_any_instant_comes_to_rest_within_limits(jerk, moves, limits, periods):
-    job = Job(jerk, limits, 0.05, 80.0)
+    job = Job(limits, 0.05, 80.0, jerk)
     for move in moves:
         job.add(*move)
     parts = [job.planner.step(periods)]

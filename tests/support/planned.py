@@ -1,4 +1,4 @@
-"""A program for the planner, kept beside its ideal path so that the independent verifier can judge the result."""
+"""Programs for the planner, kept beside their ideal paths so that the independent verifier can judge the result."""
 
 import numpy as np
 
@@ -9,6 +9,7 @@ DT = 0.001
 VMAX = np.array([100.0, 90, 80, 60, 60, 60, 50, 50, 50])
 AMAX = np.array([500.0, 700, 400, 300, 300, 300, 250, 250, 250])
 ROUNDING = 1 + 1e-6
+COMPARED = 400  # positions of a job that are compared with its path
 
 
 def come_to_rest(planner):
@@ -64,3 +65,48 @@ class Program:
         assert report.corner <= tolerance + AMAX.max() * self.dt**2
         assert report.end == 0.0
         return report
+
+
+class Job:
+    """Moves given to a planner with limits, and the path that they stand for."""
+
+    def __init__(self, limits, tolerance, feed, jerk=False):
+        self.planner, self.limits, self.tolerance, self.feed = Planner(DT, 500), limits, tolerance, feed
+        self.jerk = jerk
+        for axis, values in enumerate(limits):
+            self.planner.set_limits(axis, *values)
+        self.planner.limit_jerk(jerk)
+        self.path, self.at = [], np.zeros(9)
+
+    def add(self, end, turn):
+        """A line; where `turn` is given, half a turn of an arc about the middle of the chord."""
+        end9 = np.zeros(9)
+        end9[: len(end)] = end
+        options = {"tolerance": self.tolerance, "vel_max": self.feed * 2, "id": len(self.path) + 1}
+        if turn is None or np.hypot(*(end9[:2] - self.at[:2])) < 1e-3:
+            assert self.planner.add_line(end9, self.feed, **options)
+            if not np.array_equal(self.at, end9):
+                self.path.append(Line(self.at, end9))
+        else:
+            center = np.array([*(self.at[:2] + end9[:2]) / 2, self.at[2]])
+            assert self.planner.add_arc(end9, center, (0, 0, 1), turn, self.feed, **options)
+            self.path.append(Arc(self.at, end9, center, np.array([0.0, 0, 1]), turn))
+        self.at = end9
+
+    def check(self, positions):
+        """At rest, within every limit and the tolerance."""
+        assert self.planner.status()["done"]
+        if not self.path:
+            return
+        rows = [*self.limits, *[(1.0,) * len(self.limits[0])] * (9 - len(self.limits))]
+        vmax, amax, *jmax = (np.array(column) for column in zip(*rows, strict=True))
+        stride = max(1, len(positions) // COMPARED)
+        report = verify(positions, self.path, vmax, amax, DT, self.tolerance, stride, jmax[0] if self.jerk else None)
+        assert report.worst_velocity <= ROUNDING
+        assert report.worst_acceleration <= ROUNDING
+        assert report.worst_jerk <= ROUNDING
+        assert report.deviation <= self.tolerance + 1e-6
+
+    def check_to_the_end(self, positions):
+        self.check(positions)
+        assert np.array_equal(self.planner.status()["pos"], self.at)
