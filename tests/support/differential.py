@@ -186,6 +186,7 @@ KNOWN: tuple[tuple[str, re.Pattern[str], re.Pattern[str], re.Pattern[str]], ...]
         ("a word twice", "", r"Multiple [pq@^] words", ""),
         ("M98 without P beyond a search", "Found 'm98' code with no P-word", "", "m98"),
         ("a comment left open, met by a search", "(Unclosed|Nested) comment found", "", "m98"),
+        ("ROUND of a number beyond whole ones", r"-2147483648\.0", "", r"round\["),
         ("$0 with M51", r"Invalid spindle \(\$\) number in M51", "", r"\$"),
         ("$ with G95 or G97", r"\$ \(spindle selection\) word with no", "", r"\$"),
         ("G5.2 under compensation", "", "Cannot convert spline with cutter radius compensation", r"g4[12].*g5\.2"),
