@@ -11,11 +11,13 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import shutil
 import signal
 from dataclasses import dataclass
 from pathlib import Path
 
 from hal.process import alive, start_time
+from linuxcnc.systempython import LINKS
 from nml import clock, namespace
 from nml.errors import PyemcError
 
@@ -149,6 +151,7 @@ class Instance:
     def release(self) -> None:
         """Remove every trace of the namespace and give the lock back."""
         remove_shared_memory()
+        shutil.rmtree(self.folder / LINKS, ignore_errors=True)
         for path in self.folder.iterdir():
             if path != self._path and not path.is_dir():
                 path.unlink(missing_ok=True)

@@ -21,6 +21,8 @@ SYSTEM_PYTHON = Path("/usr/bin/python3")
 DISTRIBUTION = "pyemc"
 PACKAGES = Path(nml.__file__).parent.parent
 OTHERS = Path(posix_ipc.__file__).parent
+LINKS = "python"
+"""Folder of links to our packages, in the machine's run-time folder."""
 
 
 def is_ours() -> bool:
@@ -31,7 +33,7 @@ def is_ours() -> bool:
 
 def environment() -> dict[str, str]:
     """PYTHONPATH, and the variable of what our packages import."""
-    folder = PACKAGES if PACKAGES != OTHERS else _links(namespace.runtime_dir() / "python")
+    folder = PACKAGES if PACKAGES != OTHERS else _links(namespace.runtime_dir() / LINKS)
     found = {"PYTHONPATH": os.pathsep.join(filter(None, [str(folder), os.environ.get("PYTHONPATH")]))}
     if is_ours():
         found[LIBRARIES] = str(OTHERS)
@@ -42,6 +44,7 @@ def _links(folder: Path) -> Path:
     """A folder with our packages alone, where they are installed among others."""
     folder.mkdir(exist_ok=True)
     for name in {file.parts[0] for file in metadata.files(DISTRIBUTION) or ()}:
-        if (name.endswith(".py") or "." not in name) and not (folder / name).is_symlink():
+        module = name.endswith(".py") or name.isidentifier()
+        if module and not name.startswith("__") and not (folder / name).is_symlink():
             (folder / name).symlink_to(PACKAGES / name)
     return folder
