@@ -258,7 +258,7 @@ def main() -> int:
         else:
             print("LinuxCNC cannot be run here (needs Debian's package, root and --user): its columns stay empty")
         for job in jobs:
-            ours = moving(forecast(ini, folder / f"{slug(job)}.ngc", Machine.from_ini(ini), trace=True).positions)
+            ours = moving(forecast(ini, folder / f"{slug(job)}.ngc", Machine.from_ini(ini), trace=True).trace.positions)
             theirs = stock.get(job.name)
             best = bound(job) if job.curve else None
             row = judged(job, ours) + (judged(job, theirs) if theirs is not None else ["", "", ""])

@@ -2,7 +2,8 @@
 
 The program goes through the interpreter and the arithmetic that task uses into the trajectory planner that motion uses,
 and the planner's servo periods are run as fast as they go: so the time is the machine's own. Talks to
-``emcmot.forecast_canon`` (the canon that feeds and steps the planner), ``rs274ngc`` and the INI file; to no bus.
+``emcmot.forecast_canon`` (the canon that feeds and steps the planner), ``rs274ngc``, the INI file, and, where positions
+are asked for, ``emcmot.forecast_traces``; to no bus.
 """
 
 from __future__ import annotations
@@ -13,18 +14,17 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any
 
 from emcmot.forecast_canon import ForecastCanon
-from emcmot.forecast_error import path_error
 from emcmot.forecast_machine import AXES, Machine
 from nml.errors import ConfigError, InterpError
 from nml.inifile import IniFile
 from rs274ngc import tooltable
 from rs274ngc.interp import INTERP_ENDFILE, INTERP_EXECUTE_FINISH, INTERP_EXIT, Interpreter
+
+if TYPE_CHECKING:
+    from emcmot.forecast_traces import Trace
 
 SHOWN_LINES = 10
 
@@ -50,15 +50,16 @@ class Forecast:
     line_seconds: dict[int, float]
     line_lost: dict[int, float]
     line_reason: dict[int, str]  # what cost a line most
-    path_error: float | None  # lu: largest distance from the program's path, where a trace was asked for and bounds it
     unbounded: int  # moves in G64 without P, which may leave their path as far as their speed asks for
     reasons: list[tuple[str, float]]
     moves: int
-    positions: NDArray[np.float64]  # of every servo period, where a trace was asked for
-    lines: NDArray[np.int64]  # program line of every servo period
+    trace: Trace | None  # where it was asked for
     run: list[tuple[int, float]]  # program lines in the order of their execution, and when each ends
-    start: tuple[float, ...]
-    period: float
+
+    @property
+    def path_error(self) -> float | None:
+        """lu: largest distance from the program's path, where a trace was asked for and bounds it."""
+        return self.trace.path_error if self.trace is not None else None
 
 
 def forecast(
@@ -94,32 +95,30 @@ def forecast(
 
 def summarise(canon: ForecastCanon, machine: Machine) -> Forecast:
     """Add up what the canon has counted."""
-    times, lost = canon.times()
-    lines, sections = np.array(canon.move_line), np.array(canon.move_section)
-    motion = np.bincount(sections, weights=times, minlength=len(canon.sections))
-    pauses = canon.pauses
-    positions, ids = canon.trace()
+    seconds, lost, reason = canon.by_line()
+    motion, pauses = canon.by_section(), canon.pauses
     names = reason_names()
     reasons = sorted(zip(names, canon.reasons(), strict=True), key=lambda item: -item[1])
+    trace = None
+    if canon.keeps_trace:
+        from emcmot.forecast_traces import trace_of
+
+        trace = trace_of(canon, machine.start)
     return Forecast(
         seconds=canon.periods * canon.period + sum(pauses),
         sections=[
-            (tool, operation, float(motion[k]), pauses[k])
+            (tool, operation, motion[k], pauses[k])
             for k, (tool, operation) in enumerate(canon.sections)
             if motion[k] or pauses[k]
         ],
-        line_seconds=by_line(lines, times),
-        line_lost=by_line(lines, lost),
-        line_reason=reasons_of_lines(lines, lost, canon.move_reasons(), names),
-        path_error=path_error(canon.moves(), machine.start, positions, ids) if len(positions) else None,
+        line_seconds=largest_first(seconds),
+        line_lost=largest_first(lost),
+        line_reason={line: names[number] for line, number in reason.items()},
         unbounded=canon.unbounded,
-        reasons=[(name, seconds) for name, seconds in reasons if seconds >= 0.001],
-        moves=len(lines) - 1,
-        positions=positions,
-        lines=lines[ids],
-        start=machine.start,
-        period=canon.period,
-        run=run_of(lines, times),
+        reasons=[(name, value) for name, value in reasons if value >= 0.001],
+        moves=canon.count,
+        trace=trace,
+        run=canon.run(),
     )
 
 
@@ -129,29 +128,9 @@ def reason_names() -> list[str]:
     return [f"{limit} of {axis}" for limit in limits for axis in AXES] + ["corners, curves"]
 
 
-def reasons_of_lines(
-    lines: NDArray[np.int64], lost: NDArray[np.float64], reasons: NDArray[np.int8], names: list[str]
-) -> dict[int, str]:
-    """For each line that lost time, what cost its slowest move most."""
-    order = np.argsort(lost)
-    order = order[lost[order] > 0.0]
-    return dict(zip(lines[order].tolist(), [names[reason] for reason in reasons[order].tolist()], strict=True))
-
-
-def run_of(lines: NDArray[np.int64], times: NDArray[np.float64]) -> list[tuple[int, float]]:
-    """Lines in the order of their moves, neighbours of one line as one, with the time of motion at the end of each."""
-    ends = np.cumsum(times)
-    last = np.flatnonzero(np.append(np.diff(lines) != 0, len(lines) > 0))
-    last = last[lines[last] != 0]
-    return list(zip(lines[last].tolist(), ends[last].round(4).tolist(), strict=True))
-
-
-def by_line(lines: NDArray[np.int64], seconds: NDArray[np.float64]) -> dict[int, float]:
-    """Sums of the moves of each program line, the largest first."""
-    sums = np.bincount(lines, weights=seconds) if len(lines) else np.zeros(0)
-    order = np.argsort(-sums)
-    order = order[sums[order] > 0.0]
-    return dict(zip(order.tolist(), sums[order].tolist(), strict=True))
+def largest_first(seconds: dict[int, float]) -> dict[int, float]:
+    """Seconds of lines that have any, the most first."""
+    return dict(sorted(((line, value) for line, value in seconds.items() if value > 0.0), key=lambda item: -item[1]))
 
 
 def clock_text(seconds: float) -> str:
@@ -174,7 +153,7 @@ def report(result: Forecast) -> str:
             f"  line {line:>7}  {seconds:8.3f} s of {result.line_seconds[line]:.3f} s  {result.line_reason[line]}"
             for line, seconds in list(result.line_lost.items())[:SHOWN_LINES]
         ]
-    if len(result.positions):
+    if result.trace is not None:
         out += ["", f"largest distance from the program's path: {path_error_text(result)}"]
     return "\n".join(out)
 
@@ -189,7 +168,7 @@ def as_json(result: Forecast, points: int) -> str:
     """The forecast for programs; the run of lines is thinned out to so many points."""
     run = result.run
     if len(run) > points:
-        run = [run[k] for k in np.unique(np.linspace(0, len(run) - 1, points).astype(int))]
+        run = [run[k] for k in sorted({k * (len(run) - 1) // max(points - 1, 1) for k in range(points)})]
     return json.dumps(
         {
             "seconds": result.seconds,
@@ -205,40 +184,6 @@ def as_json(result: Forecast, points: int) -> str:
             "unbounded_moves": result.unbounded,
         }
     )
-
-
-def traces(result: Forecast) -> dict[str, NDArray[Any]]:
-    """Position, velocity, acceleration and jerk of every servo period by name, with time and program line."""
-    rest = np.zeros((1, len(AXES)))
-    velocity = np.diff(result.positions, axis=0, prepend=[result.start]) / result.period
-    acceleration = np.diff(velocity, axis=0, prepend=rest) / result.period
-    return {
-        "time": (np.arange(len(result.positions)) + 1) * result.period,
-        "position": result.positions,
-        "velocity": velocity,
-        "acceleration": acceleration,
-        "jerk": np.diff(acceleration, axis=0, prepend=rest) / result.period,
-        "line": result.lines,
-    }
-
-
-def draw(traced: dict[str, NDArray[Any]], path: Path) -> None:
-    """A picture of the traces of the axes that move."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ConfigError("pictures need the package matplotlib: pip install matplotlib") from None
-    moving = [axis for axis in range(9) if np.ptp(traced["position"][:, axis]) > 0]
-    figure = Figure(figsize=(12, 9), layout="constrained")
-    rows = figure.subplots(4, 1, sharex=True)
-    for row, name in zip(rows, ("position", "velocity", "acceleration", "jerk"), strict=True):
-        for axis in moving:
-            row.plot(traced["time"], traced[name][:, axis], label=AXES[axis], linewidth=0.8)
-        row.set_ylabel(name)
-        row.grid(alpha=0.3)
-    rows[0].legend(loc="upper right", ncols=9)
-    rows[-1].set_xlabel("time, s")
-    figure.savefig(path, dpi=100)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -288,10 +233,11 @@ def main(arguments: list[str] | None = None) -> int:
                 Path(options.json).write_text(text)
         if options.json != "-":
             print(report(result))
-        if options.trace:
-            np.savez_compressed(options.trace, **traces(result))  # type: ignore[arg-type]
-        if options.png:
-            draw(traces(result), options.png)
+        if result.trace is not None:
+            if options.trace:
+                result.trace.save(options.trace)
+            if options.png:
+                result.trace.draw(options.png)
     except (ConfigError, InterpError, OSError) as error:
         print(error, file=sys.stderr)
         return 1

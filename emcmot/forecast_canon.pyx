@@ -5,10 +5,9 @@ the periods counted here are those that the machine takes. Spindles turn at the 
 of their move, tools are changed in a given time. ``emcmot.forecast`` drives it and prints what it has recorded.
 """
 
-import numpy as np
-
+from cpython.mem cimport PyMem_Free, PyMem_Realloc
 from libc.math cimport INFINITY, fabs, fmax, fmin
-from libc.stdint cimport int8_t, int64_t
+from libc.stdint cimport int64_t
 from libc.string cimport memset
 
 from emcmot.kins.kinematics cimport KINS_JOINTS, KinematicsModule
@@ -31,6 +30,13 @@ cdef enum:
 
 OF_INTERPRETER = "interpreter:"  # comments that are none of the program
 
+cdef struct MoveFigures:
+    double seconds               # that the move took
+    double lost                  # seconds against the programmed speed
+    int line                     # of the program
+    int section
+    int reason                   # what cost it most
+
 cdef double SLOW = 0.98          # share of the programmed speed below which a period counts as slow
 cdef double AT_JERK = 0.45       # share of a jerk limit from which it counts: see emcmot.tp.smooth
 cdef double AT_LIMIT = 0.97      # share of a limit from which it counts as reached
@@ -44,18 +50,18 @@ cdef class ForecastCanon(MoveCanon):
     cdef readonly double period
     cdef readonly int64_t periods
     cdef double tool_change_s
-    cdef bint keep_trace
+    cdef readonly bint keeps_trace
     cdef double[AXIS_COUNT] amax
     cdef double[AXIS_COUNT] vmax
     cdef double[AXIS_COUNT] jmax
     cdef double[AXIS_COUNT] last_vel
     cdef double[AXIS_COUNT] last_acc
-    cdef double[::1] move_time
-    cdef double[::1] move_lost
-    cdef int8_t[::1] move_reason
+    cdef MoveFigures* figures    # of the moves by number, from 1 on
+    cdef Py_ssize_t room         # of them
+    cdef readonly Py_ssize_t count
     cdef double[REASONS] lost_now
     cdef int64_t judged              # the move that `lost_now` is of
-    cdef readonly list move_line, move_section, sections, pauses
+    cdef readonly list sections, pauses
     cdef list shapes
     cdef object chunk, positions_out, ids_out
     cdef double[:, ::1] chunk_positions
@@ -79,6 +85,7 @@ cdef class ForecastCanon(MoveCanon):
 
     def __dealloc__(self):
         tp_free(self.tp)
+        PyMem_Free(self.figures)
 
     def __init__(self, machine, tools=(), tool_change_s=0.0, trace=False):
         """``machine``: an ``emcmot.forecast_machine.Machine``; ``tools``: the tool table; ``trace``: keep every position."""
@@ -86,7 +93,7 @@ cdef class ForecastCanon(MoveCanon):
         self.set_limits(machine.velocities, machine.accelerations, machine.axis_mask)
         self.period = machine.period
         self.tool_change_s = tool_change_s
-        self.keep_trace = trace
+        self.keeps_trace = trace
         self.tools = [Tool(), *tools]
         self.selected = -1
         tp_set_cycle_time(self.tp, self.period)
@@ -99,10 +106,8 @@ cdef class ForecastCanon(MoveCanon):
             tp_set_axis_limits(self.tp, axis, self.vmax[axis], self.amax[axis], machine.jerks[axis])
         tp_set_planner_type(self.tp, any(machine.jerks) or any(joint.jerk for joint in machine.joints))
         tp_set_vel_limit(self.tp, machine.max_linear_velocity)
-        self.move_time = np.zeros(4096)
-        self.move_lost = np.zeros(4096)
-        self.move_reason = np.zeros(4096, dtype=np.int8)
-        self.move_line, self.move_section, self.sections, self.pauses, self.shapes = [0], [0], [], [], []
+        self.make_room(4096)
+        self.sections, self.pauses, self.shapes = [], [], []
         self.positions_out, self.ids_out = [], []
         self.operation = ""
         self.new_section()
@@ -150,28 +155,73 @@ cdef class ForecastCanon(MoveCanon):
         self.section = self.sections.index(key)
 
     cdef new_chunk(self):
+        cdef int periods = CHUNK if self.keeps_trace else 1
         if self.chunk_used:
-            self.positions_out.append(np.asarray(self.chunk_positions)[: self.chunk_used])
-            self.ids_out.append(np.asarray(self.chunk_ids)[: self.chunk_used])
-        self.chunk_positions = np.empty((CHUNK if self.keep_trace else 1, AXIS_COUNT))
-        self.chunk_ids = np.empty(CHUNK if self.keep_trace else 1, dtype=np.int64)
+            self.positions_out.append(self.chunk_positions[: self.chunk_used])
+            self.ids_out.append(self.chunk_ids[: self.chunk_used])
+        self.chunk_positions = memoryview(bytearray(periods * AXIS_COUNT * 8)).cast("d", (periods, AXIS_COUNT))
+        self.chunk_ids = memoryview(bytearray(periods * 8)).cast("q")
         self.chunk_used = 0
 
     def trace(self):
-        """Commanded position of every period, shape (periods, 9), and the number of the move that it belongs to."""
+        """Commanded position of every period, shape (periods, 9), and the number of the move that it belongs to: both in
+        parts, one behind the other."""
         self.new_chunk()
-        if not self.positions_out:
-            return np.empty((0, AXIS_COUNT)), np.empty(0, dtype=np.int64)
-        return np.concatenate(self.positions_out), np.concatenate(self.ids_out)
+        return self.positions_out, self.ids_out
 
-    def times(self):
-        """Seconds of each move, and seconds lost against the programmed speed."""
-        count = len(self.move_line)
-        return np.asarray(self.move_time)[:count], np.asarray(self.move_lost)[:count]
+    cdef int make_room(self, Py_ssize_t more) except -1:
+        """Room for the figures of so many further moves."""
+        figures = <MoveFigures*>PyMem_Realloc(self.figures, (self.room + more) * sizeof(MoveFigures))
+        if figures == NULL:
+            raise MemoryError(f"no room for the figures of {self.room + more} moves")
+        memset(&figures[self.room], 0, more * sizeof(MoveFigures))
+        self.figures = figures
+        self.room += more
+        return 0
 
-    def move_reasons(self):
-        """What cost each move most, as an index into `reasons`."""
-        return np.asarray(self.move_reason)[: len(self.move_line)]
+    # --- Sums
+
+    def by_line(self):
+        """Of each program line: seconds, seconds lost against the programmed speed, and what cost its slowest move most, as
+        an index into `reasons`."""
+        cdef dict seconds = {}, lost = {}, reason = {}, slowest = {}
+        cdef MoveFigures* move
+        cdef Py_ssize_t number
+        for number in range(1, self.count + 1):
+            move = &self.figures[number]
+            line = move.line
+            seconds[line] = seconds.get(line, 0.0) + move.seconds
+            if move.lost > 0.0:
+                lost[line] = lost.get(line, 0.0) + move.lost
+                if move.lost >= slowest.get(line, 0.0):
+                    slowest[line] = move.lost
+                    reason[line] = move.reason
+        return seconds, lost, reason
+
+    def by_section(self):
+        """Seconds of motion of each section."""
+        cdef Py_ssize_t number
+        cdef list seconds = [0.0] * len(self.sections)
+        for number in range(1, self.count + 1):
+            seconds[self.figures[number].section] += self.figures[number].seconds
+        return seconds
+
+    def run(self):
+        """Lines in the order of their moves, neighbours of one line as one, with the time of motion at the end of each."""
+        cdef list ends = []
+        cdef double time = 0.0
+        cdef Py_ssize_t number
+        cdef int line
+        for number in range(1, self.count + 1):
+            line = self.figures[number].line
+            time += self.figures[number].seconds
+            if line and (number == self.count or self.figures[number + 1].line != line):
+                ends.append((line, round(time, 4)))
+        return ends
+
+    def lines(self):
+        """The program line of each move, by its number; 0 is none."""
+        return [self.figures[number].line for number in range(self.count + 1)]
 
     def moves(self):
         """Shapes of the moves from the first one on, where a trace is kept: end, center, normal and turns of arcs, and
@@ -203,7 +253,7 @@ cdef class ForecastCanon(MoveCanon):
         self.periods += 1
         if self.status.id == 0:
             return
-        self.move_time[self.status.id] += self.period
+        self.figures[self.status.id].seconds += self.period
         wanted = self.status.requested_vel
         if self.status.current_vel < SLOW * wanted:
             self.blame(self.period * (1.0 - self.status.current_vel / wanted))
@@ -228,9 +278,9 @@ cdef class ForecastCanon(MoveCanon):
             self.judged = self.status.id
         self.lost_now[reason] += lost
         self.lost_by_reason[reason] += lost
-        self.move_lost[self.status.id] += lost
-        if self.lost_now[reason] >= self.lost_now[self.move_reason[self.status.id]]:
-            self.move_reason[self.status.id] = reason
+        self.figures[self.status.id].lost += lost
+        if self.lost_now[reason] >= self.lost_now[self.figures[self.status.id].reason]:
+            self.figures[self.status.id].reason = reason
 
     cdef record(self):
         cdef int axis
@@ -246,7 +296,7 @@ cdef class ForecastCanon(MoveCanon):
         tp_get_status(self.tp, &self.status)
         while not self.status.done and self.status.free < free:
             self.cycle()
-            if self.keep_trace:
+            if self.keeps_trace:
                 self.record()
 
     def run_out(self):
@@ -257,22 +307,21 @@ cdef class ForecastCanon(MoveCanon):
     # --- Moves
 
     cdef queue(self, TpSegment* seg, int line):
-        cdef int count = len(self.move_line), result
-        if count + 1 >= self.move_time.shape[0]:
-            self.move_time = np.concatenate([self.move_time, np.zeros(count + 1)])
-            self.move_lost = np.concatenate([self.move_lost, np.zeros(count + 1)])
-            self.move_reason = np.concatenate([self.move_reason, np.zeros(count + 1, dtype=np.int8)])
-        seg.id = count
+        cdef int result
+        if self.count + 2 > self.room:
+            self.make_room(self.room)
+        seg.id = self.count + 1
         result = tp_add(self.tp, seg, NULL)
         if result == TP_FULL:
             self.run_until(2048)
             result = tp_add(self.tp, seg, NULL)
         if result == TP_OK:
-            self.move_line.append(line)
-            self.move_section.append(self.section)
+            self.count += 1
+            self.figures[self.count].line = line
+            self.figures[self.count].section = self.section
             bounded = seg.term != TP_TERM_BLEND or seg.tolerance > 0.0
             self.unbounded += not bounded
-            if self.keep_trace:
+            if self.keeps_trace:
                 end = tuple([seg.end[i] for i in range(AXIS_COUNT)])
                 arc = (tuple(seg.center), tuple(seg.normal), seg.turn) if seg.kind == TP_ARC else None
                 self.shapes.append((end, arc, bounded))

@@ -47,8 +47,8 @@ def compare(ini: Path, data: Path, program: Path) -> None:
     assert run.finish() == 0, run.errors
     motion = sum(seconds for _, _, seconds, _ in expected.sections)
     moved = moving_periods(recorded(data))
-    assert moved == pytest.approx(moving_periods(expected.positions), rel=0.01)
-    assert moved * expected.period == pytest.approx(motion, rel=0.01)
+    assert moved == pytest.approx(moving_periods(expected.trace.positions), rel=0.01)
+    assert moved * expected.trace.period == pytest.approx(motion, rel=0.01)
     assert traces() == []
 
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from emcmot.forecast import forecast, main, report, traces
+from emcmot.forecast import forecast, main, report
 from emcmot.forecast_machine import Machine
 from nml.errors import ConfigError, InterpError
 from nml.inifile import IniFile
@@ -89,9 +89,9 @@ def test_a_spline_is_cut_smoothly_at_the_programmed_feed(run):
     text = "G21 G90 G64 P0.02 F1200\nG1 X10\nG5 X40 Y20 I15 J0 P-15 Q0\nG5 X70 Y40 I15 J0 P-15 Q0\nG1 X80\nM2\n"
     result = run(text, trace=True)
     assert result.path_error <= 0.02
-    speed = np.linalg.norm(traces(result)["velocity"], axis=1)
+    speed = np.linalg.norm(result.trace.arrays()["velocity"], axis=1)
     assert speed[60:-60].min() > 0.99 * 20.0
-    assert np.abs(traces(result)["acceleration"]).max() <= 500.001
+    assert np.abs(result.trace.arrays()["acceleration"]).max() <= 500.001
 
 
 def test_without_a_tolerance_to_use_the_path_is_kept_exactly(run):
@@ -133,10 +133,10 @@ MAX_ACCELERATION = 250
 def test_joints_of_other_kinematics_hold_their_limits(run, monkeypatch):
     monkeypatch.setitem(globals(), "INI", INI + COREXY)
     result = run("G21 G90\nG0 X80 Y80\nG0 X80 Y160\nM2\n", trace=True)
-    motors = result.positions[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])  # x + y and x - y
-    speed = np.abs(np.diff(motors, axis=0)).max(axis=0) / result.period
+    motors = result.trace.positions[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])  # x + y and x - y
+    speed = np.abs(np.diff(motors, axis=0)).max(axis=0) / result.trace.period
     assert speed == pytest.approx([40.0, 40.0], abs=1e-3)
-    assert np.abs(np.diff(motors, 2, axis=0)).max() / result.period**2 <= 250 * 1.0001
+    assert np.abs(np.diff(motors, 2, axis=0)).max() / result.trace.period**2 <= 250 * 1.0001
     assert result.seconds == pytest.approx(160 / 40 + 80 / 40, abs=0.5)
 
 
@@ -163,14 +163,14 @@ def test_a_machine_with_jerk_limits_takes_longer(run, monkeypatch):
     limited = INI.replace("[TRAJ]", "[TRAJ]\nPLANNER_TYPE = 1\nMAX_LINEAR_JERK = 5000")
     monkeypatch.setitem(globals(), "INI", limited)
     result = run(text, trace=True)
-    jerk = np.abs(traces(result)["jerk"]).max()
+    jerk = np.abs(result.trace.arrays()["jerk"]).max()
     assert result.seconds > 1.1 * usual.seconds
     assert 2000 < jerk <= 5000.01
 
 
 def test_traces_hold_every_servo_period(run):
     result = run("G21 G90\nG64 P0.01\nG1 X10 F3000\nG1 Y10\nM2\n", trace=True)
-    traced = traces(result)
+    traced = result.trace.arrays()
     assert len(traced["time"]) == round(result.seconds / 0.001)
     assert np.allclose(traced["position"][-1, :3], [10, 10, 5])
     assert np.abs(traced["acceleration"]).max() <= 500.001
