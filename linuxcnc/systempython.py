@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib import metadata
 from pathlib import Path
 
 import posix_ipc
@@ -42,6 +41,8 @@ def environment() -> dict[str, str]:
 
 def _links(folder: Path) -> Path:
     """A folder with our packages alone, where they are installed among others."""
+    from importlib import metadata  # 17 ms, which only installations of this kind wait for
+
     folder.mkdir(exist_ok=True)
     for name in {file.parts[0] for file in metadata.files(DISTRIBUTION) or ()}:
         module = name.endswith(".py") or name.isidentifier()
