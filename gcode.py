@@ -13,8 +13,8 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from itertools import product
 from math import atan2, cos, hypot, pi, sin, tau
-from operator import add
 from typing import Any
 
 from nml.errors import ConfigError, InterpError
@@ -27,6 +27,7 @@ INTERP_ERROR = 5
 NOWHERE = 9e99
 SEGMENTS_MIN = 3
 ASKED_EVERY_S = 1.0  # how often a display is asked whether it wants to abort
+START, END = 1, 2  # places of a move's ends
 PLANE_AXES = {1: (0, 1, 2), 2: (1, 2, 0), 3: (2, 0, 1)}
 
 linecode = LineCode
@@ -111,14 +112,17 @@ def calc_extents(*lists: Sequence[Sequence[Any]]) -> tuple[list[float], list[flo
     """
     low, high = [NOWHERE] * 3, [-NOWHERE] * 3
     low_bare, high_bare = [NOWHERE] * 3, [-NOWHERE] * 3
-    for moves in filter(None, lists):
-        for axis in range(3):
-            offsets = [move[-1][axis] for move in moves]
-            for place in (1, 2):
-                values = [move[place][axis] for move in moves]
-                bare = list(map(add, values, offsets))
-                low[axis], high[axis] = min(low[axis], min(values)), max(high[axis], max(values))
-                low_bare[axis], high_bare[axis] = min(low_bare[axis], min(bare)), max(high_bare[axis], max(bare))
+    of_tool: dict[tuple[float, ...], list[Sequence[Any]]] = {}
+    for moves in lists:
+        for move in moves:
+            of_tool.setdefault(tuple(move[-1]), []).append(move)
+    for offset, moves in of_tool.items():
+        for axis, place in product(range(3), (START, END)):
+            values = [move[place][axis] for move in moves]
+            least, most = min(values), max(values)
+            low[axis], high[axis] = min(low[axis], least), max(high[axis], most)
+            low_bare[axis] = min(low_bare[axis], least + offset[axis])
+            high_bare[axis] = max(high_bare[axis], most + offset[axis])
     return low, high, low_bare, high_bare
 
 
