@@ -139,6 +139,11 @@ class Session:
         return out
 
     @property
+    def idle(self) -> bool:
+        """Whether nothing is to be done before the next input."""
+        return not (self._inbox or self._skip or self._subscriptions or self.closed or self._wait is not None)
+
+    @property
     def incomplete(self) -> bool:
         """Whether the client owes the rest of a request."""
         return bool(self._skip) or (bool(self._inbox) and self._wait is None)

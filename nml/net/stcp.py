@@ -34,6 +34,11 @@ class TextSession:
         self.closed = False
 
     @property
+    def idle(self) -> bool:
+        """Whether nothing is to be done before the next input."""
+        return not (self._inbox or self.closed)
+
+    @property
     def incomplete(self) -> bool:
         """Whether part of a line, or more, waits."""
         return bool(self._inbox)
