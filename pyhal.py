@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any
 
 import hal
 from nml import clock
@@ -41,21 +40,12 @@ class pinDir(IntEnum):
     IO = hal.HAL_IO
 
 
-class pin:
+class pin(hal.Pin):
     """A pin: its full name, and its ``value``."""
 
-    def __init__(self, item: Any, fullname: str) -> None:
-        self._item = item
+    def __init__(self, item: hal.Pin, fullname: str) -> None:
+        super().__init__(item)
         self.fullname = fullname
-
-    @property
-    def value(self) -> Any:
-        """What the pin, or the signal it is linked to, has now."""
-        return self._item.get()
-
-    @value.setter
-    def value(self, value: Any) -> None:
-        self._item.set(value)
 
 
 class port(pin):

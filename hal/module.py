@@ -149,12 +149,12 @@ class _ItemWrap:
     The methods are those of the ``item``, as attributes: a call of ``get`` or ``set`` goes straight to it.
     """
 
-    def __init__(self, item: item | _ItemWrap) -> None:
-        self._item_wrap(item._item if isinstance(item, _ItemWrap) else item)
+    def __init__(self, native: item | _ItemWrap) -> None:
+        self._item_wrap(native._item if isinstance(native, _ItemWrap) else native)
 
-    def _item_wrap(self, item: item) -> None:
-        self._item = item
-        self.get, self.set = item.get, item.set
+    def _item_wrap(self, native: item) -> None:
+        self._item = native
+        self.get, self.set = native.get, native.set
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""Previews drawn with OpenGL, for displays such as AXIS: the path of a program, its dwells, and where the tool has been.
+"""Previews drawn with OpenGL, for displays such as AXIS: a program's path, its dwells, and where the tool has been.
 
 ``rs274.glcanon`` and ``positionlogger.call`` come here. A point has nine numbers, X to W; the geometry of the display
 ([DISPLAY]GEOMETRY) says how they make a place in the picture, letter by letter: a linear axis moves along its
@@ -44,6 +44,11 @@ cdef struct Turning:
     double[3] offset  # inches; X, Y, Z of the work offset
     bint[3] turns  # which of A, B, C turn the picture
 
+GL_NAMES = (  # in the order of OpenGL
+    b"Begin", b"End", b"Vertex3dv", b"Vertex3f", b"Color4d", b"LoadName", b"VertexPointer", b"ColorPointer",
+    b"EnableClientState", b"DrawArrays",
+)
+
 cdef OpenGL gl
 cdef bint gl_found = False
 cdef Turning turning = Turning(False, [0.0, 0.0, 0.0], [False, False, False])
@@ -62,8 +67,7 @@ cdef int find_gl() except -1:
         dlopen("libOpenGL.so.0", RTLD_NOW | RTLD_GLOBAL)
     cdef void **functions = <void **>&gl
     cdef int number = 0
-    for name in (b"Begin", b"End", b"Vertex3dv", b"Vertex3f", b"Color4d", b"LoadName", b"VertexPointer", b"ColorPointer",
-                 b"EnableClientState", b"DrawArrays"):
+    for name in GL_NAMES:
         functions[number] = dlsym(RTLD_DEFAULT, b"gl" + name)
         if functions[number] == NULL:
             raise error("OpenGL is not installed: there is no libGL.so.1 to draw with")
@@ -139,7 +143,7 @@ def gui_rot_offsets(double x, double y, double z) -> None:
 
 
 def gui_respect_offsets(str coordinates, int respect) -> None:
-    """Whether A, B, C of the ``coordinates`` turn the picture about the work offset; with 0 none is added to them."""
+    """Whether rotary axes turn the picture about the work offset; if so, those of ``coordinates`` turn it."""
     turning.about_offset = respect != 0
     if respect:
         for number, letter in enumerate("ABC"):
@@ -168,7 +172,7 @@ def line9(str geometry, start, end) -> None:
 
 
 def draw_lines(str geometry, list lines not None, int for_selection) -> None:
-    """Draw moves, each (line number, start, end, ...), in strips; those of each line number have its name to be picked."""
+    """Draw moves, each (line number, start, end, ...), in strips; those of a line number have its name to be picked."""
     cdef Point9 first, last
     cdef double[3] picture
     cdef int name, drawn_name = -1, axis
@@ -253,7 +257,7 @@ def draw_dwells(str geometry, list dwells not None, double alpha, int for_select
 
 
 def draw_track(const unsigned char[::1] rows, int count, bint pairs) -> None:
-    """Draw the tool's path: ``rows`` of 32 bytes, place (3 float32), colour (4 bytes), and both again for a second place.
+    """Draw the tool's path: rows of 32 bytes, place (3 float32), colour (4 bytes), and both again for a second place.
 
     As a strip of first places; or, for ``pairs``, as a line from the first to the second place of each row.
     """

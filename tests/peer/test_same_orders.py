@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 import linuxcnc
-from tests.support import stock_machine
-from tests.support.compared import first_same
+from tests.support.compared import on_both
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -128,15 +127,14 @@ Step = list[Any]  # state and order, result, texts, what is shown
 OWN_WORDS = {"program_open", "set_digital_output", "set_analog_output", "spindle", "jog", "home", "unhome"}
 
 
+def differences(steps: list[tuple[Step, Step]]) -> object:
+    return [*unlike_results(steps), *unlike_effects(steps)]
+
+
 @pytest.fixture(scope="module")
 def steps(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Step, Step]]:
     """Each order on Debian's machine and on ours."""
-    def compare() -> list[tuple[Step, Step]]:
-        theirs = stock_machine.display(SCRIPT)
-        ours = stock_machine.ours(tmp_path_factory.mktemp("ours"), SCRIPT)
-        return list(zip(theirs, ours, strict=True))
-
-    return first_same(compare, lambda steps: [*unlike_results(steps), *unlike_effects(steps)])
+    return on_both(tmp_path_factory.mktemp("ours"), SCRIPT, differences)
 
 
 def unlike_results(steps: list[tuple[Step, Step]]) -> Iterator[tuple[Any, ...]]:

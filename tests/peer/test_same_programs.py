@@ -12,8 +12,7 @@ import pytest
 
 import linuxcnc
 from tests.peer.test_same_script import same
-from tests.support import stock_machine
-from tests.support.compared import first_same
+from tests.support.compared import on_both
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -176,16 +175,14 @@ FROM_LINE = {
 Step = list[Any]  # what was done, whether the machine came to be as expected, texts, what is shown
 
 
+def differences(steps: list[tuple[Step, Step]]) -> object:
+    return unlike_ends(steps) or unlike_texts(steps) or unlike_shown(steps)
+
+
 @pytest.fixture(scope="module")
 def steps(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Step, Step]]:
     """Each step on Debian's machine and on ours."""
-
-    def compare() -> list[tuple[Step, Step]]:
-        theirs = stock_machine.display(SCRIPT)
-        ours = stock_machine.ours(tmp_path_factory.mktemp("ours"), SCRIPT)
-        return list(zip(theirs, ours, strict=True))
-
-    return first_same(compare, lambda steps: unlike_ends(steps) or unlike_texts(steps) or unlike_shown(steps))
+    return on_both(tmp_path_factory.mktemp("ours"), SCRIPT, differences)
 
 
 def test_every_step_ends_in_the_same_way(steps: list[tuple[Step, Step]]) -> None:

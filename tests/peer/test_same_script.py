@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 import linuxcnc
-from tests.support import stock_machine
-from tests.support.compared import first_same
+from tests.support.compared import on_both
 from tests.support.stock_machine import needs_stock_machine
 
 pytestmark = [pytest.mark.peer, pytest.mark.process, needs_stock_machine]
@@ -118,15 +117,14 @@ UNTIL_ON = {"spindle"}
 PASSED_OVER = {"gcodes": {2}, "mcodes": {1, 6}}
 
 
+def differences(steps: list[tuple[Step, Step]]) -> object:
+    return unlike_results(steps) or unlike_attributes(steps)
+
+
 @pytest.fixture(scope="module")
 def steps(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Step, Step]]:
     """Each step on Debian's machine and on ours."""
-    def compare() -> list[tuple[Step, Step]]:
-        theirs = stock_machine.display(SCRIPT)
-        ours = stock_machine.ours(tmp_path_factory.mktemp("ours"), SCRIPT)
-        return list(zip(theirs, ours, strict=True))
-
-    return first_same(compare, lambda steps: unlike_results(steps) or unlike_attributes(steps))
+    return on_both(tmp_path_factory.mktemp("ours"), SCRIPT, differences)
 
 
 def test_every_command_has_the_same_result_and_tells_the_operator_the_same(steps: list[tuple[Step, Step]]) -> None:

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
+
+from tests.support import stock_machine
 
 ATTEMPTS = 3
 T = TypeVar("T")
@@ -35,3 +38,12 @@ def first_same(compare: Callable[[], T], differences: Callable[[T], object]) -> 
         if not differences(found):
             return found
     return compare()
+
+
+def on_both(folder: Path, script: str, differences: Callable[[list[tuple[Any, Any]]], object]) -> list[tuple[Any, Any]]:
+    """Each step of a script, a display, on Debian's machine and on ours, which has its files below ``folder``."""
+
+    def compare() -> list[tuple[Any, Any]]:
+        return list(zip(stock_machine.display(script), stock_machine.ours(folder, script), strict=True))
+
+    return first_same(compare, differences)
