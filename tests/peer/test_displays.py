@@ -52,6 +52,7 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         assert server.stdout is not None
         monkeypatch.setenv("DISPLAY", f":{server.stdout.readline().strip()}")
         monkeypatch.setenv("LIBGL_ALWAYS_SOFTWARE", "1")
+        monkeypatch.setenv("GST_PLUGIN_SYSTEM_PATH_1_0", "/nonexistent")  # no sound: JACK would leave shared memory
         yield
     finally:
         server.terminate()
