@@ -1,10 +1,11 @@
 """What the HAL costs, beside LinuxCNC's where Debian's package is installed: thread cycles, pins from Python.
 
-    python benchmarks/hal_bench.py [--seconds S]
+    python benchmarks/hal_bench.py [--seconds S] [--histograms]
 
 A thread's time is the median of its ``.time`` pin: for us ns, for LinuxCNC processor clocks, divided by the clock's
-rate. The histogram is that of a 1 kHz thread, idle and with every processor busy. Start it as root to shield LinuxCNC's
-session from others (it gets namespaces of its own and an ordinary user).
+rate. Then, of a 1 kHz thread, idle and with every processor busy, how far its periods are from 1 ms; ``--histograms``
+shows them whole. LinuxCNC asks for realtime priority on a realtime kernel alone, so ours is measured with and without.
+Start it as root to shield LinuxCNC's session from others (it gets namespaces of its own and an ordinary user).
 """
 
 from __future__ import annotations
@@ -24,10 +25,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 os.environ.setdefault("PYEMC_NAMESPACE", f"halbench{os.getpid()}")
 
 from hal.latency import histogram_text
+from hal.realtime import REALTIME_VARIABLE
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 LINUXCNC = shutil.which("halrun", path="/usr/bin") and os.geteuid() == 0
 SAMPLES = 400
+WITHIN = (10_000, 20_000, 50_000, 100_000, 500_000)  # ns from a period of 1 ms
 
 CASES = {
     "empty thread cycle": "",
@@ -56,13 +59,13 @@ def hal_file(body: str) -> str:
     )  # fmt: skip
 
 
-def run(folder: Path, text: str, ours: bool) -> str:
+def run(folder: Path, text: str, ours: bool, **variables: str) -> str:
     """The output of a HAL file under our halrun or LinuxCNC's."""
     path = folder / "bench.hal"
     path.write_text(text)
     if ours:
         command = [sys.executable, "-m", "hal.halrun", "-f", str(path)]
-        environment = {**os.environ, "PYTHONPATH": str(CHECKOUT)}
+        environment = {**os.environ, "PYTHONPATH": str(CHECKOUT), **variables}
     else:
         command = [*_shield(), f"cd {folder} && /usr/bin/halrun -f {path}"]
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder)}
@@ -123,26 +126,37 @@ def _burn(_: int) -> None:
         sum(range(10000))
 
 
-def lateness(folder: Path, seconds: float, ours: bool) -> list[int]:
-    """How late each period of a 1 kHz thread began, ns."""
+def errors_of_periods(folder: Path, seconds: float, ours: bool, **variables: str) -> list[int]:
+    """How far each period of a 1 kHz thread was from 1 ms, in ns, sorted."""
     text = (
         "loadrt threads name1=t period1=1000000\nloadrt timedelta\nloadrt sampler cfg=s depth=4000\n"
         "net late timedelta.0.current-error sampler.0.pin.0\naddf timedelta.0 t\naddf sampler.0 t\nstart\n"
         f"loadusr -w halsampler -n {int(seconds * 1000)}\n"
     )
-    return [int(line) for line in run(folder, text, ours).split() if line.lstrip("-").isdigit()][5:]
+    lines = run(folder, text, ours, **variables).split()
+    return sorted([int(line) for line in lines if line.lstrip("-").isdigit()][5:])
 
 
-def histogram(folder: Path, title: str, seconds: float, busy: bool) -> None:
-    """Lateness of a 1 kHz thread, beside LinuxCNC's."""
+def periods(folder: Path, seconds: float, busy: bool, histograms: bool) -> None:
+    """A row for each kind of 1 kHz thread."""
     burners = [multiprocessing.Process(target=_burn, args=(n,), daemon=True) for n in range(os.cpu_count() or 1)]
     for burner in burners if busy else []:
         burner.start()
-    for name, ours in (("ours", True), ("LinuxCNC", False)):
-        if ours or LINUXCNC:
-            errors = sorted(lateness(folder, seconds, ours))
-            high = errors[int(len(errors) * 0.999)]
-            print(f"\n1 kHz thread, {title}, {name}: from {errors[0]} to {errors[-1]} ns, 99.9 % below {high} ns")
+    print(f"\n{'1 kHz, ' + ('every processor busy' if busy else 'idle') + ', % within us':34}", end="")
+    print("".join(f"{limit // 1000:8}" for limit in WITHIN) + f"{'99.9 %':>10}{'worst us':>10}")
+    kinds: list[tuple[str, bool, dict[str, str]]] = [
+        ("ours", True, {}), ("ours, no realtime priority", True, {REALTIME_VARIABLE: "0"}),
+        ("LinuxCNC, no realtime priority", False, {}),
+    ]  # fmt: skip
+    for name, ours, variables in kinds:
+        if not (ours or LINUXCNC):
+            continue
+        errors = errors_of_periods(folder, seconds, ours, **variables)
+        sizes = sorted(abs(error) for error in errors)
+        shares = [100.0 * sum(size <= limit for size in sizes) / len(sizes) for limit in WITHIN]
+        high, worst = sizes[int(len(sizes) * 0.999)] / 1000, sizes[-1] / 1000
+        print(f"{name:34}" + "".join(f"{share:8.2f}" for share in shares) + f"{high:10.0f}{worst:10.0f}", flush=True)
+        if histograms:
             print("\n".join(histogram_text(errors, 20_000)))
     for burner in burners if busy else []:
         burner.kill()
@@ -150,7 +164,8 @@ def histogram(folder: Path, title: str, seconds: float, busy: bool) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=5.0, help="of each histogram")
+    parser.add_argument("--seconds", type=float, default=5.0, help="of each 1 kHz thread")
+    parser.add_argument("--histograms", action="store_true", help="of the 1 kHz threads")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -162,8 +177,8 @@ def main() -> None:
         names = ("c['in']", "c['in'] = 1.0", "pin.get()", "pin.set(1.0)")
         for case, mine, other in zip(names, python_times(folder, True), theirs, strict=True):
             row(case, mine, other)
-        histogram(folder, "idle", options.seconds, busy=False)
-        histogram(folder, "every processor busy", options.seconds, busy=True)
+        for busy in (False, True):
+            periods(folder, options.seconds, busy, options.histograms)
 
 
 if __name__ == "__main__":

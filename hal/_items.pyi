@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from hal._shm import Item
+from hal._records import Item
 
 class Items:
     items: dict[str, Item]

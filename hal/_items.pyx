@@ -1,7 +1,7 @@
 """The fast part of ``hal.component``: its pins and parameters as items of a mapping."""
 
 from hal._mapping cimport announce
-from hal._shm cimport Item, cell_value, set_cell
+from hal._records cimport Item, cell_value, set_cell
 
 
 cdef class Items:
@@ -25,7 +25,7 @@ cdef class Items:
     def __setitem__(self, name, value):
         cdef Item item = self.find(name)
         set_cell(item.cell(), item.item.type, value)
-        announce(item.segment.at)
+        announce(item.mapping.at)
 
     def __contains__(self, name):
         return name in self.items

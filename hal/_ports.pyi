@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from hal._shm import Item
+from hal._records import Item
 
 class Port(Item):
     def readable(self) -> int: ...

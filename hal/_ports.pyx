@@ -3,12 +3,11 @@
 from libc.stdint cimport uint32_t
 
 from hal._mapping cimport announce
-from hal._shm cimport Item, port_at
+from hal._records cimport TYPE_PORT, Item, port_at
 from hal.port cimport (
     hal_port, port_clear, port_commit, port_peek, port_readable, port_write, port_writable,
 )
 
-from hal._shm import PORT
 from nml.errors import HalError
 
 
@@ -16,7 +15,7 @@ cdef class Port(Item):
     """A pin as one end of a stream of bytes, where its type is port; HalError for another."""
 
     cdef hal_port* port(self) except? NULL:
-        if self.item.type != PORT:
+        if self.item.type != TYPE_PORT:
             raise HalError(f"'{self.head.name.decode()}' is no port")
         return port_at(self.cell())
 
@@ -44,7 +43,7 @@ cdef class Port(Item):
     def peek_commit(self, uint32_t count) -> bool:
         """Drop the next bytes; False where there are not as many."""
         done = bool(port_commit(self.port(), count))
-        announce(self.segment.at)
+        announce(self.mapping.at)
         return done
 
     def read(self, uint32_t count):
@@ -58,7 +57,7 @@ cdef class Port(Item):
         """Append bytes, or text as UTF-8; False, and nothing is written, where there is no room for all."""
         cdef bytes raw = data.encode() if isinstance(data, str) else bytes(data)
         done = bool(port_write(self.port(), raw, <uint32_t>len(raw)))
-        announce(self.segment.at)
+        announce(self.mapping.at)
         return done
 
     def clear(self) -> None:

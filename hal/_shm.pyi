@@ -1,111 +1,49 @@
-"""Types of the compiled segment; the texts are in ``_shm.pyx``."""
-
-from typing import Any
+"""Types of the compiled tables; the texts are in ``_shm.pyx``."""
 
 from hal._mapping import Mapping
+from hal._records import (
+    BIT as BIT,
+)
+from hal._records import (
+    FLOAT as FLOAT,
+)
+from hal._records import (
+    IN as IN,
+)
+from hal._records import (
+    IO as IO,
+)
+from hal._records import (
+    OUT as OUT,
+)
+from hal._records import (
+    PORT as PORT,
+)
+from hal._records import (
+    RO as RO,
+)
+from hal._records import (
+    RW as RW,
+)
+from hal._records import (
+    S32 as S32,
+)
+from hal._records import (
+    S64 as S64,
+)
+from hal._records import (
+    U32 as U32,
+)
+from hal._records import (
+    U64 as U64,
+)
+from hal._records import Comp, Funct, Item, Signal, Thread
 
-BIT: int
-FLOAT: int
-S32: int
-U32: int
-PORT: int
-S64: int
-U64: int
-IN: int
-OUT: int
-IO: int
-RO: int
-RW: int
 PIN: int
 PARAM: int
 USER: int
 REALTIME: int
 THREAD_COMP: int
-
-class Record:
-    @property
-    def name(self) -> str: ...
-    @property
-    def exists(self) -> bool: ...
-    @property
-    def address(self) -> int: ...
-    def free(self) -> None: ...
-
-class Item(Record):
-    alias: str
-    value: Any
-    @property
-    def type(self) -> int: ...
-    @property
-    def dir(self) -> int: ...
-    @property
-    def owner(self) -> int: ...
-    @property
-    def shown(self) -> str: ...
-    @property
-    def signal(self) -> Signal | None: ...
-    def get(self) -> Any: ...
-    def set(self, value: Any) -> None: ...
-    def set_safe(self, value: Any) -> None: ...
-    def fall_safe(self) -> None: ...
-    def show_same(self, other: Item) -> None: ...
-    def link(self, signal: Signal) -> None: ...
-    def unlink(self) -> None: ...
-    def show_to(self, variable: int) -> None: ...
-    def lie_at(self, variable: int) -> None: ...
-
-class Signal(Record):
-    value: Any
-    def allot(self, size: int) -> None: ...
-    @property
-    def type(self) -> int: ...
-    def get(self) -> Any: ...
-    def set(self, value: Any) -> None: ...
-    def pins(self) -> list[Item]: ...
-    def writer(self) -> Item | None: ...
-
-class Comp(Record):
-    ready: bool
-    args: str
-    @property
-    def id(self) -> int: ...
-    @property
-    def kind(self) -> int: ...
-    @property
-    def pid(self) -> int: ...
-    @property
-    def start(self) -> int: ...
-
-class Funct(Record):
-    @property
-    def owner(self) -> int: ...
-    @property
-    def users(self) -> int: ...
-    @property
-    def uses_fp(self) -> bool: ...
-    @property
-    def reentrant(self) -> bool: ...
-    @property
-    def code(self) -> int: ...
-    @property
-    def arg(self) -> int: ...
-
-class Thread(Record):
-    priority: int
-    @property
-    def owner(self) -> int: ...
-    @property
-    def period_ns(self) -> int: ...
-    @property
-    def uses_fp(self) -> bool: ...
-    @property
-    def cycles(self) -> int: ...
-    @property
-    def overruns(self) -> int: ...
-    @property
-    def running(self) -> bool: ...
-    def functs(self) -> list[Funct]: ...
-    def set_functs(self, functs: list[Funct]) -> None: ...
 
 class Segment(Mapping):
     def used(self) -> dict[str, tuple[int, int, int]]: ...

@@ -1,6 +1,7 @@
 """Types of the native threads; the texts are in ``_threads.pyx``."""
 
-from hal._shm import Segment, Thread
+from hal._records import Thread
+from hal._shm import Segment
 
 class NativeThread:
     record: Thread

@@ -17,7 +17,8 @@ from posix.time cimport CLOCK_MONOTONIC, CLOCK_THREAD_CPUTIME_ID, TIMER_ABSTIME,
 from posix.unistd cimport usleep
 
 from hal._mapping cimport announce, hal_segment, hal_thread
-from hal._shm cimport Item, Segment, Thread
+from hal._records cimport Item, Thread
+from hal._shm cimport Segment
 from hal.cell cimport hal_at, hal_cell, hal_function, hal_pin
 
 from nml.errors import HalError

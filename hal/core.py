@@ -11,7 +11,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from hal import _shm
-from hal._shm import IN, IO, OUT, PARAM, PIN, PORT, RW, Comp, Item, Segment, Signal
+from hal._records import Comp, Item, Signal
+from hal._shm import IN, IO, OUT, PARAM, PIN, PORT, RW, Segment
 from hal.process import alive, own_identity
 from hal.values import PIN_DIR_NAMES, TYPE_NAMES, parse_value
 from nml import clock

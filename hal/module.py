@@ -18,12 +18,14 @@ import os
 import sys
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Any
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
 from hal import _shm
 from hal._items import Items
 from hal._ports import Port
-from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64, Item
+from hal._records import Item
+from hal._shm import BIT, FLOAT, PARAM, PIN, PORT, S32, S64, U32, U64
 from hal.core import LOCK_ALL, LOCK_CONFIG, LOCK_LOAD, LOCK_NONE, LOCK_PARAMS, LOCK_RUN, LOCK_TUNE, Hal
 from hal.stream import Stream
 from hal.values import TYPE_NAMES
@@ -143,10 +145,16 @@ class item(Port):
         return f"<hal.{'Pin' if self._is_pin else 'Param'} {self._name} {TYPE_NAMES[self.type]}>"
 
 
+_FORWARDED = (
+    "clear", "get_dir", "get_name", "get_type", "is_pin", "peek", "peek_commit", "read", "readable", "size", "wait",
+    "wait_change", "writable", "write",
+)  # fmt: skip
+
+
 class _ItemWrap:
     """A pin or parameter in plain Python, so that a class may have other bases besides, as GObject's in ``hal_glib``.
 
-    The methods are those of the ``item``, as attributes: a call of ``get`` or ``set`` goes straight to it.
+    What the ``item`` has, this has too; a call of ``get`` or ``set`` goes straight to it.
     """
 
     def __init__(self, native: item | _ItemWrap) -> None:
@@ -177,13 +185,16 @@ class _ItemWrap:
     def value(self, value: Any) -> None:
         self._item.set(value)
 
-    def __getattr__(self, name: str) -> Any:
-        if name == "_item":
-            raise AttributeError("Pin.__init__ was not called")
-        return getattr(self._item, name)
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
 
     def __repr__(self) -> str:
         return repr(self._item)
+
+
+for _name in _FORWARDED:  # no __getattr__: each look for `get` and `set` would pay for it
+    setattr(_ItemWrap, _name, property(attrgetter(f"_item.{_name}")))
 
 
 class Pin(_ItemWrap):

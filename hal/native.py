@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hal._native import Library, SharedMemory, print_messages
-from hal._shm import Item
+from hal._records import Item
 from hal.core import Hal
 from nml.errors import HalError
 

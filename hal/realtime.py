@@ -20,7 +20,8 @@ from typing import Any
 
 from hal import _shm
 from hal._calls import PythonCall
-from hal._shm import BIT, IN, IO, OUT, PORT, REALTIME, RO, RW, S32, THREAD_COMP, Comp, Funct, Item
+from hal._records import Comp, Funct, Item
+from hal._shm import BIT, IN, IO, OUT, PORT, REALTIME, RO, RW, S32, THREAD_COMP
 from hal._threads import NativeThread, Scheduler, lock_memory
 from hal.components import find as find_component
 from hal.core import LOCK_CONFIG, LOCK_LOAD, Hal

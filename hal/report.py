@@ -11,7 +11,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from hal._shm import IN, OUT, PIN, Item, Signal
+from hal._records import Item, Signal
+from hal._shm import IN, OUT, PIN
 from hal.core import Hal
 from hal.values import TYPE_NAMES, show_value
 from nml.errors import PyemcError

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 
-from hal._shm import IN, OUT, PARAM, PIN, RW, USER, Item, Signal
+from hal._records import Item, Signal
+from hal._shm import IN, OUT, PARAM, PIN, RW, USER
 from hal.core import LOCK_CONFIG, LOCK_LOAD, LOCK_PARAMS, LOCK_RUN, Hal
 from hal.values import PARAM_DIR_NAMES, PIN_ARROWS, PIN_DIR_NAMES, SIGNAL_ARROWS, TYPE_NAMES, TYPES, show_value
 

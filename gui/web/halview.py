@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from hal._shm import IN, OUT, PARAM, PIN, RW, Item, Signal
+from hal._records import Item, Signal
+from hal._shm import IN, OUT, PARAM, PIN, RW
 from hal.core import Hal
 from hal.report import owner_of
 from hal.values import PARAM_DIR_NAMES, PIN_DIR_NAMES, TYPE_NAMES
