@@ -145,7 +145,7 @@ def measure_ours() -> dict:
         "PYEMC_NAMESPACE": f"bench{os.getpid()}",
         "PYTHONPATH": str(ROOT),
     }
-    results = run_machine([python, "-m", "linuxcnc.launcher", "INI"], environment)
+    results = run_machine([python, "-m", "linuxcnc_start", "INI"], environment)
     with tempfile.TemporaryDirectory() as folder:
         results["rs274"] = time_rs274([python, "-m", "rs274ngc"], Path(folder), environment)
         results["forecast"] = forecast_speed(Path(folder), environment)

@@ -90,7 +90,7 @@ def run(blocks: int, feed: float) -> list[tuple[float, int, float, int]]:
             "PYEMC_NAMESPACE": f"blocks{os.getpid()}",
             "PYTHONPATH": str(ROOT),
         }
-        command = [sys.executable, "-m", "linuxcnc.launcher", str(ini)]
+        command = [sys.executable, "-m", "linuxcnc_start", str(ini)]
         done = subprocess.run(
             command, cwd=folder, env=environment, capture_output=True, text=True, timeout=900, check=False
         )

@@ -13,8 +13,8 @@ import signal
 from linuxcnc import takedown
 from linuxcnc.instance import Instance
 from linuxcnc.process import show_as
+from nml import signals
 
-IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 DISMISSED = b"."
 
 
@@ -28,10 +28,11 @@ class Guard:
 
     def _start(self) -> None:
         read_end, self._write_end = os.pipe()
-        self.pid = os.fork()
-        if self.pid == 0:
-            os.close(self._write_end)
-            self._watch(read_end)
+        with signals.held():
+            self.pid = os.fork()
+            if self.pid == 0:
+                os.close(self._write_end)
+                self._watch(read_end)
         os.close(read_end)
 
     def _watch(self, read_end: int) -> None:
@@ -39,8 +40,8 @@ class Guard:
         try:
             os.setsid()
             show_as(["linuxcnc-guard"])
-            for number in IGNORED:
-                signal.signal(number, signal.SIG_IGN)
+            signals.ignore()
+            signal.signal(signal.SIGQUIT, signal.SIG_IGN)
             if os.read(read_end, 1) != DISMISSED:
                 records = self._instance.recorded()
                 takedown.bring_to_rest(records, self._nml_file)

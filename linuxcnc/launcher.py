@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
 from linuxcnc.options import overrides, parse
-from nml import clock, namespace
+from nml import clock, namespace, signals
 
 if TYPE_CHECKING:
     from linuxcnc.machine import Machine
@@ -26,16 +24,8 @@ WIZARD = "gui.web"  # its page offers configurations and starts one
 POLL = 0.05  # host seconds between looks at the processes
 
 
-class Stopped(Exception):
-    """A signal asked the launcher to end."""
-
-    def __init__(self, number: int) -> None:
-        self.number = number
-        super().__init__(f"stopped by {signal.Signals(number).name}")
-
-
 def main(arguments: list[str] | None = None) -> int:
-    """Entry point; returns the exit code."""
+    """Start what the command line asks for; returns the exit code, or raises Stopped."""
     options = parse(arguments)
     try:
         if options.namespace is not None:
@@ -46,15 +36,9 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError as reason:
         print(f"linuxcnc: {reason}", file=sys.stderr)
         return 1
-    try:
-        if options.ini is None and not options.last and _only_a_desktop():
-            return subprocess.call([sys.executable, "-P", "-m", WIZARD, "--wizard"])
-        return _launch(options)
-    except Stopped as stopped:
-        print(f"linuxcnc: {stopped}", file=sys.stderr)
-        return 128 + stopped.number
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+    if options.ini is None and not options.last and _only_a_desktop():
+        return subprocess.call([sys.executable, "-P", "-m", WIZARD, "--wizard"])
+    return _launch(options)
 
 
 def _only_a_desktop() -> bool:
@@ -70,10 +54,11 @@ def _launch(options: argparse.Namespace) -> int:
     from linuxcnc._connection import error
     from linuxcnc.configuration import Configuration
     from linuxcnc.filters import filtered
-    from linuxcnc.machine import END_SIGNALS, Machine, to_stderr
+    from linuxcnc.machine import Machine, to_stderr
     from linuxcnc.program import ProgramError, run_program
     from nml.errors import PyemcError
 
+    signals.check()
     held: list[str] = []
     said: list[str] = []
     ini: Path | None = None
@@ -94,8 +79,7 @@ def _launch(options: argparse.Namespace) -> int:
         else:
             configuration.display()
             lastused.remember(ini)
-        for number in END_SIGNALS:
-            signal.signal(number, _stop)
+        signals.check()
         with Machine(configuration, report, options.talk) as machine:
             machine.start()
             started = True
@@ -121,6 +105,7 @@ def _ini_file(options: argparse.Namespace) -> Path:
     """The INI file that was named, started last, or is chosen now."""
     from linuxcnc import lastused, picker
 
+    signals.check()
     if options.ini is not None:
         return options.ini
     return lastused.recall_or_refuse() if options.last else picker.pick()
@@ -173,12 +158,3 @@ def _follow_display(machine: Machine) -> int:
     if code < 0:
         raise MachineError(display.farewell())
     return code
-
-
-def _stop(number: int, frame: FrameType | None) -> None:
-    """Ends the main loop."""
-    raise Stopped(number)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

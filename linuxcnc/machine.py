@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import shlex
-import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -19,14 +18,13 @@ from linuxcnc.guard import Guard
 from linuxcnc.halsetup import SetupSession, set_up
 from linuxcnc.instance import Instance, ProcessRecord
 from linuxcnc.options import Talk
-from linuxcnc.process import SIGNALS, Child, Log, start
+from linuxcnc.process import Child, Log, start
 from linuxcnc.programs import Command
-from nml import clock
+from nml import clock, signals
 from nml.channel import Channel
 from nml.errors import PyemcError
 
 START_TIMEOUT = 15.0  # host seconds until a process must be ready
-END_SIGNALS = SIGNALS  # what asks the launcher to end
 POLL = 0.002  # host seconds between looks at a condition
 
 
@@ -156,7 +154,8 @@ class Machine:
     # --- watching --------------------------------------------------------------------------------------------------
 
     def check(self) -> None:
-        """Pass on what the processes say; MachineError when one of them has ended."""
+        """Pass on what the processes say; MachineError when one of them has ended, Stopped when a signal came."""
+        signals.check()
         self._guard.keep()
         self._tell_of_host()
         if self._host_record is not None and not self._host_record.alive:
@@ -195,8 +194,7 @@ class Machine:
 
     def stop(self) -> None:
         """Bring the machine to rest, end every process, remove every trace; no signal interrupts it."""
-        for number in END_SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
+        signals.ignore()
         self._tell_of_host()
         for service in self._beside:
             for line in service.new_output():

@@ -19,10 +19,9 @@ from pathlib import Path
 from typing import NoReturn, Protocol
 
 from linuxcnc.programs import Command
-from nml import clock
+from nml import clock, signals
 
 LAST_WORDS = 1.0  # host seconds before its end in which a process tells why it ends
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # what the launcher treats in its own way
 FIRST_OWN_FD = 3
 ARGUMENTS = (45, 46)  # where the command line begins and ends: fields of /proc/PID/stat after the name
 
@@ -45,9 +44,10 @@ class Forked:
         self._code: int | None = None
         sys.stdout.flush()
         sys.stderr.flush()
-        self.pid = os.fork()
-        if self.pid == 0:
-            _become(command, folder, output)
+        with signals.held():
+            self.pid = os.fork()
+            if self.pid == 0:
+                _become(command, folder, output)
 
     @property
     def returncode(self) -> int | None:
@@ -77,13 +77,14 @@ def _become(command: Command, folder: Path, output: int | None) -> NoReturn:
     code = 1
     try:
         atexit._clear()
-        for number in SIGNALS:
-            signal.signal(number, signal.default_int_handler if number is signal.SIGINT else signal.SIG_DFL)
+        signals.forget()
         if output is not None:
             os.setsid()
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
             os.dup2(output, 1)
             os.dup2(output, 2)
+        else:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C comes to the launcher too, which ends its display
         os.closerange(FIRST_OWN_FD, os.sysconf("SC_OPEN_MAX"))
         os.chdir(folder)
         show_as(command.words)

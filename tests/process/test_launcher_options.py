@@ -30,7 +30,7 @@ def started(folder, *options, changes=None, hal=""):
 
 def launcher(home, *words, stdin=subprocess.DEVNULL):
     return subprocess.run(
-        [sys.executable, "-m", "linuxcnc.launcher", *words],
+        [sys.executable, "-m", "linuxcnc_start", *words],
         cwd=ROOT,
         env=os.environ | dict.fromkeys(DESKTOP, "") | {"HOME": str(home), "TERM": "dumb"},
         stdin=stdin,
@@ -150,7 +150,7 @@ def test_a_configuration_is_chosen_in_a_dumb_terminal(tmp_path):
     ours, theirs = pty.openpty()
     with os.fdopen(ours, "r+b", buffering=0) as terminal:
         process = subprocess.Popen(
-            [sys.executable, "-m", "linuxcnc.launcher"],
+            [sys.executable, "-m", "linuxcnc_start"],
             cwd=ROOT,
             env=os.environ | {"HOME": str(tmp_path), "TERM": "dumb"},
             stdin=theirs,

@@ -99,7 +99,7 @@ def wizard(home):
 def end_machine():
     """End the machine of this namespace, if the wizard has started one."""
     for pid, command in processes():
-        if "linuxcnc.launcher" in command:
+        if "linuxcnc_start" in command:
             os.kill(pid, signal.SIGTERM)
     wait_until(lambda: processes() == [], "ended")
 

@@ -74,7 +74,7 @@ class Run:
         # Files, which a talkative display cannot fill as it could a pipe
         self._said = tempfile.TemporaryFile("w+"), tempfile.TemporaryFile("w+")  # noqa: SIM115  closed by finish
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "linuxcnc.launcher", str(ini), "--speed", str(speed), *options],
+            [sys.executable, "-m", "linuxcnc_start", str(ini), "--speed", str(speed), *options],
             env=environment,
             cwd=ini.parent,
             stdin=subprocess.DEVNULL,

@@ -147,7 +147,7 @@ def ours(folder: Path, script: str, *, changes: dict[str, str] | None = None, se
     _write(folder, _as_display(script, sys.executable), changes or {})
     (folder / "server.nml").write_text(re.sub(r"TCP=\d+ xdr", "", Path("/usr/share/linuxcnc/linuxcnc.nml").read_text()))
     done = subprocess.run(
-        [sys.executable, "-m", "linuxcnc.launcher", "machine.ini"],
+        [sys.executable, "-m", "linuxcnc_start", "machine.ini"],
         cwd=folder,
         env={**os.environ, "HOME": str(folder), "PYTHONPATH": str(SOURCE), namespace.VARIABLE: f"ours{os.getpid()}"},
         capture_output=True,

@@ -71,7 +71,7 @@ class WizardServer:
     def start_machine(self, ini: Path, port: int) -> None:
         """Hand over to ``linuxcnc INI``, whose display takes the same port, and end."""
         subprocess.Popen(
-            [sys.executable, "-P", "-m", "linuxcnc.launcher", str(ini)],
+            [sys.executable, "-P", "-m", "linuxcnc_start", str(ini)],
             env={**os.environ, PORT_VARIABLE: str(port)},
             cwd=ini.parent,
             stdin=subprocess.DEVNULL,
