@@ -1,7 +1,7 @@
 """The hardware abstraction layer. ``import hal`` gives LinuxCNC's module of that name (see ``hal.module``).
 
-Rooms: ``_shm`` and ``_records`` the tables in shared memory, ``core`` their rules, ``realtime``, ``host`` and ``client`` the
-realtime host, ``session``, ``commands`` and ``show`` the shell, ``components`` the built-in realtime components.
+Rooms: ``_shm`` and ``_records`` the tables in shared memory, ``core`` their rules, ``realtime``, ``host``,
+``client`` the realtime host, ``session``, ``commands`` and ``show`` the shell, ``components`` the realtime ones.
 """
 
 from hal.module import (

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from hal.core import Hal
+from hal.finder import is_file
 from nml.errors import HalError
 from nml.namespace import runtime_dir
 
@@ -45,9 +46,9 @@ class HostClient:
         return self._started
 
     def loadrt(self, name: str, words: list[str]) -> None:
-        """Load a realtime module; the host is started if there is none."""
+        """Load a realtime module, or one in a file; the host, started if there is none, has another working folder."""
         self._connect(start=True)
-        self._ask("loadrt", name, words)
+        self._ask("loadrt", os.path.abspath(name) if is_file(name) else name, words)
 
     def unloadrt(self, name: str) -> None:
         """Unload a module, or ``all`` of them and the host."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hal import loadusr
 from hal._shm import PARAM, PIN, USER
-from hal.core import EPERM, LOCK_ALL, LOCK_NONE, LOCK_TUNE
+from hal.core import EPERM, LOCK_ALL, LOCK_NONE, LOCK_TUNE, suggest
 from hal.halfile import without_arrows
 from hal.show import Save, Show, list_names, lock_status, memory_status
 from hal.values import TYPE_NAMES, plain_value, type_number
@@ -283,7 +284,7 @@ def show(session: Session, args: list[str]) -> None:
     tables = Show(session.hal, session.script)
     what = args[0] if args else "all"
     if what != "all" and what not in tables.tables:
-        raise HalError(f"Unknown 'show' type '{what}'")
+        raise HalError(f"Unknown 'show' type '{what}'{suggest(what, [*tables.tables, 'all'])}")
     _print(tables.all(args[1:]) if what == "all" else tables.tables[what](args[1:]))
 
 
@@ -307,8 +308,11 @@ def save(session: Session, args: list[str]) -> None:
     if len(args) < 2:
         _print(tables[what]())
         return
-    with open(args[1], "w", encoding="utf-8") as file:
-        file.writelines(line + "\n" for line in tables[what]())
+    text = "".join(line + "\n" for line in tables[what]())
+    try:
+        Path(args[1]).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise HalError(f"cannot write '{args[1]}': {error.strerror}") from None
 
 
 @command("status", most=1, usage="status [lock|mem|all]")

@@ -307,7 +307,7 @@ class Hal:
                 if signal is None:
                     raise HalError("'net' requires at least one pin, none given")
                 return
-            pins = [self.pin(name, "Pin '{}' does not exist") for name in pin_names]
+            pins = [self._net_pin(name) for name in pin_names]
             for pin in pins:
                 linked = pin.signal
                 if linked is not None and linked.name != signal_name:
@@ -317,6 +317,11 @@ class Hal:
                 self.new_signal(signal_name, pins[0].type)
             for name in pin_names:
                 self.link(name, signal_name)
+
+    def _net_pin(self, name: str) -> Item:
+        if not name.strip("-=<>"):
+            raise HalError(f"Pin '{name}' does not exist; '{name}' is no arrow; => would be right")
+        return self.pin(name, "Pin '{}' does not exist")
 
     def _check_net(self, signal_name: str, signal: Signal | None, pins: list[Item]) -> None:
         type_ = signal.type if signal else pins[0].type

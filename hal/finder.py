@@ -89,7 +89,12 @@ def _module_from_file(path: Path) -> ModuleType:
     if not path.is_file() or spec is None or spec.loader is None:
         raise HalError(f"there is no component file '{path}'", -2)
     module = module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except SyntaxError as error:
+        raise HalError(f"{path}:{error.lineno}: SyntaxError: {error.msg}") from None
+    if not hasattr(module, "load"):
+        raise HalError(f"{path}: there is no function load(host, args) in it")
     return module
 
 
@@ -98,6 +103,8 @@ def program(name: str) -> list[str]:
     from shutil import which
 
     if os.sep in name:
+        if Path(name).is_file() and not os.access(name, os.X_OK):
+            raise HalError(f"program '{name}' is no executable file; 'chmod +x {name}' would make it one", -13)
         path: str | None = name if os.access(name, os.X_OK) else None
     else:
         beside = Path(sys.executable).parent / name

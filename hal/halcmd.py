@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import getopt
+import os
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TextIO
 
@@ -27,7 +30,7 @@ usage: halcmd [options] [command [argument ...]]
 
 `halcmd help` lists the commands.
 """
-FAILED, BAD_USAGE = 1, 255
+FAILED, BAD_USAGE, INTERRUPTED = 1, 255, 130
 
 
 @dataclass
@@ -94,6 +97,24 @@ def _run_input(session: Session, stream: TextIO) -> bool:
     return session.run_lines(stream, "<stdin>")
 
 
+@contextlib.contextmanager
+def output(program: str) -> Iterator[None]:
+    """Standard output for a program: it may be closed, a pipe that nobody reads any more, or a full disk."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    try:
+        yield
+        sys.stdout.flush()
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left in the buffer has nowhere to go
+        if not isinstance(error, BrokenPipeError):
+            print(f"{program}: cannot write: {error.strerror}", file=sys.stderr)
+        raise SystemExit(FAILED) from None
+
+
+@output("halcmd")
 def main(argv: list[str] | None = None) -> int:
     """The command; exit code 1 where a command failed, 255 for a wrong command line or file."""
     arguments = sys.argv[1:] if argv is None else argv
@@ -112,7 +133,9 @@ def main(argv: list[str] | None = None) -> int:
     except PyemcError as error:
         print(f"halcmd: {error}", file=sys.stderr)
         return BAD_USAGE
-    sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("halcmd: interrupted", file=sys.stderr)
+        return INTERRUPTED
     return code
 
 

@@ -14,10 +14,13 @@ from nml.inifile import IniFile
 
 ARROWS = frozenset({"=>", "<=", "<=>", "==>", "<==", "<==>"})
 
-# A quoted stretch of a line, then the two kinds of variables with their bracketed and bare spellings.
-_WORD = re.compile(r"""(?:"[^"]*"|'[^']*'|\\.|[^\s])+""")
+_WORD = re.compile(r"""(?:"[^"]*"|'[^']*'|[^\s])+""")
 _QUOTED_OR_COMMENT = re.compile(r""""[^"]*"|'[^']*'|(#.*)""")
-_VARIABLE = re.compile(r"\[([^\]\[\s]+)\](?:\(([^)\s]+)\)|([^\s()]+))|\$(?:\(([^)\s]+)\)|(\w+)(?=\s|$))")
+_QUOTED = re.compile(r""""[^"]*"|'[^']*'""")
+# An INI variable begins with its section, one of the environment with a dollar; then a name in brackets or a bare one.
+_VARIABLE = re.compile(
+    r"(?:\[(?P<section>[^\]]*)(?P<closed>\]?)|\$)(?:\((?P<bracketed>[^)]*)(?P<ended>\)?)|(?P<bare>[A-Za-z0-9_.-]*))"
+)
 
 
 def logical_lines(lines: Iterable[str]) -> Iterator[tuple[int, str]]:
@@ -47,10 +50,16 @@ def substitute(line: str, ini: IniFile | None) -> str:
     """Replace ``[SECTION]KEY``, ``[SECTION](KEY)``, ``$NAME`` and ``$(NAME)``; HalError for an unknown one."""
 
     def value(match: re.Match[str]) -> str:
-        section, bracketed, bare, env_bracketed, env_bare = match.groups()
+        section, closed, bracketed, ended, bare = match.groups()
+        if section is not None and not closed:
+            raise HalError("Missing close square bracket.")
+        if bracketed is not None and not ended:
+            raise HalError("Missing close parenthesis.")
+        name = bracketed or bare
+        if not name:
+            raise HalError(f"Empty variable name after '{match.group()}'.")
         if section is not None:
-            return _ini_value(ini, section, bracketed or bare)
-        name = env_bracketed or env_bare
+            return _ini_value(ini, section, name)
         found = os.environ.get(name)
         if found is None:
             raise HalError(f"Environment variable '{name}' not found.")
@@ -69,7 +78,10 @@ def _ini_value(ini: IniFile | None, section: str, key: str) -> str:
 
 
 def split(line: str) -> list[str]:
-    """The words of a line. Quotes hold a word together and stay in it, as LinuxCNC leaves them."""
+    """The words of a line. Quotes hold a word together and stay in it, as LinuxCNC leaves them; HalError if open."""
+    rest = _QUOTED.sub("", line)
+    if '"' in rest or "'" in rest:
+        raise HalError("unterminated quoted string")
     return _WORD.findall(line)
 
 

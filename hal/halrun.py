@@ -41,6 +41,7 @@ def unload_everything() -> int:
     return 0
 
 
+@halcmd.output("halrun")
 def main(argv: list[str] | None = None) -> int:
     """The command; its exit code is that of the file's commands."""
     arguments = sys.argv[1:] if argv is None else argv
@@ -82,8 +83,10 @@ def _session(session: Session, options: halcmd.Options, interactive: str) -> int
     except KeyboardInterrupt:
         code = 128 + signal.SIGINT
     finally:
-        sys.stdout.flush()
-        session.teardown()
+        try:
+            sys.stdout.flush()
+        finally:
+            session.teardown()
     return code
 
 

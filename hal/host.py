@@ -16,6 +16,7 @@ import select
 import signal
 import socket
 import sys
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -115,7 +116,9 @@ class Server:
         except PyemcError as error:
             answer = {"error": str(error), "errno": getattr(error, "errno", -22)}
         except Exception as error:  # a module's mistake is the user's to read, and no reason for the host to end
-            answer = {"error": f"{type(error).__name__}: {error}", "errno": -14}
+            traceback.print_exception(error)
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            answer = {"error": f"{place.filename}:{place.lineno}: {type(error).__name__}: {error}", "errno": -14}
         self.look()
         answer["notes"], self.host.notes = self.host.notes, []
         return answer

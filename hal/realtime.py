@@ -215,7 +215,7 @@ class Host:
     def unload(self, name: str) -> None:
         """Unload a module; its functions have left their threads before anything of it goes away."""
         if name not in self._components:
-            raise HalError(f"component '{name}' is not loaded")
+            raise HalError(f"component '{name}' is not loaded{_suggest(name, self._components)}")
         self._drop(self._components.pop(name))
 
     def _drop(self, components: list[Component]) -> None:

@@ -70,6 +70,9 @@ def main(argv: list[str] | None = None) -> int:
     names = list(options.capture)
     zero = 0
     try:
+        for path in filter(None, (options.csv, options.png)):
+            if not path.parent.is_dir():
+                raise HalError(f"there is no folder {path.parent} for {path.name}")
         trigger = Trigger.parse(options.trigger) if options.trigger else None
         with Session() as session:
             thread = session.hal.segment.find_thread(options.thread)
@@ -79,6 +82,8 @@ def main(argv: list[str] | None = None) -> int:
             period_s = thread.period_ns * 1e-9
             if trigger and trigger.pin not in names:
                 names.append(trigger.pin)
+            if not session.hal.segment.threads_running:
+                print("halscope: waiting, for the threads are stopped; 'halcmd start' lets them run", file=sys.stderr)
             with Capture(session, names, options.thread) as capture:
                 if trigger:
                     zero = options.samples // 10 if options.before is None else options.before

@@ -38,6 +38,7 @@ class Session:
         self.loads_done = False  # in pass 1
         self.programs: list[int] = []  # started by loadusr and not waited for
         self.place = Place("<commandline>")
+        self._running: list[str] = []  # the files that are being executed, each sourced by the one before
         self.comp = self.hal.add_component(f"halcmd{os.getpid()}")
         self.comp.ready = True
 
@@ -63,7 +64,7 @@ class Session:
 
             return run_file(self, str(path), list(arguments)) == 0
         try:
-            with open(path, encoding="utf-8", errors="surrogateescape") as file:
+            with open(path, encoding="utf-8-sig", errors="surrogateescape") as file:
                 return self.run_lines(file, str(path))
         except OSError as error:
             raise ConfigError(f"cannot read the HAL file: {error.strerror}", Place(str(path))) from None
@@ -71,12 +72,14 @@ class Session:
     def run_lines(self, lines: TextIO, name: str) -> bool:
         """Each line as a command; stops at the first that fails unless told to keep going."""
         outer, fine = self.place, True
+        self._running.append(os.path.realpath(name))
         for number, line in logical_lines(lines):
             self.place = Place(name, number)
             if not self.run_line(line):
                 fine = False
                 if not self.keep_going:
                     break
+        self._running.pop()
         self.place = outer
         return fine
 
@@ -119,7 +122,7 @@ class Session:
         name, *args = given
         command = commands.TABLE.get(name)
         if command is None:
-            raise HalError(f"Unknown command '{name}'{suggest(name, commands.TABLE)}")
+            raise HalError(f"Unknown command '{name}'{_meant(name)}")
         command.check(name, args)
         if self._left_out(given):
             return
@@ -140,6 +143,8 @@ class Session:
         found = find_hal_file(path, [Path(self.place.file).parent])
         if found is None:
             raise HalError(f"Could not open hal file '{path}'")
+        if os.path.realpath(found) in self._running:
+            raise HalError(f"'{path}' is being executed already; a file cannot source itself")
         if not self.run_file(found):
             raise HalError(f"'{path}' failed")
 
@@ -149,6 +154,16 @@ class Session:
         self.hal.halt_threads()
         commands.unload_all(self)
         loadusr.end_programs(self.programs)
+
+
+def _meant(name: str) -> str:
+    """What somebody may have wanted who gave an unknown command."""
+    pin, equals, value = name.partition("=")
+    if pin and equals:
+        return f"; '{pin} = {value}' would be right"
+    if " " in name:
+        return "; quotes make one word of a command and its arguments"
+    return suggest(name.lower(), commands.TABLE)
 
 
 def library_dirs() -> list[Path]:
@@ -164,6 +179,6 @@ def find_hal_file(name: str, folders: list[Path]) -> Path | None:
     plain = name.removeprefix("LIB:")
     places = library_dirs() if library_only else [*folders, Path(), *library_dirs()]
     for place in places:
-        if (place / plain).is_file():
+        if os.path.isfile(place / plain):  # not Path.is_file, which raises for a name that is too long
             return place / plain
     return None

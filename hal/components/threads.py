@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hal.realtime import Host
 
 DEFAULT_NAMES = ("thread1", "thread2", "thread3")
+SHORTEST_NS = 1000
 ALLOWED = {f"{key}{n}" for key in ("name", "period", "fp") for n in (1, 2, 3)}
 
 
@@ -22,7 +23,9 @@ def load(host: Host, args: dict[str, str]) -> None:
     for n, default_name in enumerate(DEFAULT_NAMES, 1):
         default_period = 1_000_000 if n == 1 else 0
         period = _integer(args, f"period{n}", default_period)
-        if period > 0:
+        if period and period < SHORTEST_NS:
+            raise HalError(f"threads: period{n}={period}: from {SHORTEST_NS} (ns) would be right, or 0 for no thread")
+        if period:
             host.thread(args.get(f"name{n}", default_name), period, bool(_integer(args, f"fp{n}", 1)))
     comp.ready()
 

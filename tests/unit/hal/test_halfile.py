@@ -39,6 +39,9 @@ def test_a_comment_begins_outside_of_quotes(line: str, kept: str) -> None:
         ("loadrt m num_joints=[KINS]JOINTS", ["loadrt", "m", "num_joints=2"]),
         ("setp a $(HALTEST)x", ["setp", "a", "yesx"]),
         ("setp a $HALTEST", ["setp", "a", "yes"]),
+        ("source $HALTEST/a.hal", ["source", "yes/a.hal"]),
+        ("loadrt x n=[KINS]JOINTS,[KINS]JOINTS", ["loadrt", "x", "n=2,2"]),
+        ("print 'a[KINS]JOINTS' $(HALTEST)$(HALTEST)", ["print", "'a2'", "yesyes"]),
     ],
 )
 def test_variables_are_put_in(ini: IniFile, monkeypatch: pytest.MonkeyPatch, line: str, result: list[str]) -> None:
@@ -46,7 +49,21 @@ def test_variables_are_put_in(ini: IniFile, monkeypatch: pytest.MonkeyPatch, lin
     assert words(line, ini) == result
 
 
-@pytest.mark.parametrize("line", ["setp a [KINS]NONE", "setp a [NO]JOINTS", "setp a $NO_SUCH_THING"])
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("setp a [KINS JOINTS", "Missing close square bracket"), ("setp a [KINS](JOINTS 1", "Missing close parenthesis"),
+        ("print $(HOME", "Missing close parenthesis"), ("print $", "Empty variable name"), ("print a[0]", "Empty"),
+        ('print "a b', "unterminated quoted string"), ("print it's", "unterminated quoted string"),
+        ('print "a # b', "unterminated quoted string"),
+    ],
+)  # fmt: skip
+def test_a_bracket_or_quote_that_is_left_open_is_named(ini: IniFile, line: str, what: str) -> None:
+    with pytest.raises(HalError, match=what):
+        words(line, ini)
+
+
+@pytest.mark.parametrize("line", ["setp a [KINS]NONE", "setp a [NO]JOINTS", "setp a $NO_SUCH_THING", "setp a $A.b"])
 def test_an_unknown_variable_is_an_error(ini: IniFile, line: str) -> None:
     with pytest.raises(HalError, match="not found"):
         substitute(line, ini)
