@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import shlex
 import signal
 import sys
 from collections.abc import Sequence
@@ -83,9 +82,7 @@ def build(ini: IniFile, *, faults: bool = False, announces: bool = False) -> IoC
 
 def tool_source(ini: IniFile) -> ToolSource:
     """Where this machine's tools come from: a data base program goes before a table file."""
-    program = ini.find("EMCIO", "DB_PROGRAM")
-    if program:
-        command = shlex.split(program)
+    if command := ini.words("EMCIO", "DB_PROGRAM"):
         return DatabaseTools([str(ini.resolve(command[0])), *command[1:]], ini.file.parent)
     name = ini.find("EMCIO", "TOOL_TABLE")
     if not name:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,6 +48,8 @@ class Configuration:
         self.folder = self.path.parent
         self.overrides = overrides or Overrides()
         self.ini = IniFile(self.path)
+        if not any(self.ini.sections()):
+            raise ConfigError("no [SECTION] in it, so this is no INI file; name the INI file of a machine", Place(str(self.path)))
         self.programs = Programs(self.ini)
         self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
         self.ini.find("TRAJ", "COORDINATES")
@@ -97,7 +98,7 @@ class Configuration:
         if name is None:
             return None
         path = self.folder / name
-        if not path.is_file():
+        if not os.path.isfile(path):
             raise ConfigError(
                 f"[EMC]NML_FILE = {name}: there is no file {path}; leave the entry out to use the built-in one",
                 self.ini.place("EMC", "NML_FILE"),
@@ -111,7 +112,7 @@ class Configuration:
 
     def _hal_file(self, name: str, number: int, key: str = "HALFILE") -> HalFile:
         """A HAL file beside the INI file, or in the library (``LIB:name``, or not found beside it)."""
-        words = shlex.split(name)
+        words = self.ini.words("HAL", key, num=number)
         place = self.ini.place("HAL", key, number)
         path = find_hal_file(words[0], [*self._hal_folders, self.folder])
         if path is None:

@@ -44,10 +44,13 @@ class Part:
         text = given or ini.find(self.section, self.key, self.ours)
         place = Place("<command line>") if given else ini.place(self.section, self.key)
         shown = f"{self.option} {text}" if given else f"[{self.section}]{self.key} = {text}"
-        name, *arguments = shlex.split(text) or [self.ours]
+        try:
+            name, *arguments = shlex.split(text) or [self.ours]
+        except ValueError:
+            raise ConfigError(f"{shown}: a quote stays open; close it", place) from None
         if os.sep in name or is_file(name):
             path = Path.cwd() / name if given else ini.resolve(name)
-            if not path.is_file():
+            if not os.path.isfile(path):
                 raise ConfigError(f"{shown}: there is no file {path}; use {self.ours} or a module that is there", place)
             name = str(path)
         elif name != self.ours and name not in realtime_modules():

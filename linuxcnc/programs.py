@@ -58,7 +58,7 @@ class Programs:
 
     def command(self, section: str, key: str, default: str) -> Command:
         """The command line of the program that an entry names; ConfigError where there is none."""
-        words = shlex.split(self._ini.find(section, key, default))
+        words = self._ini.words(section, key, default)
         module = MODULES.get(words[0]) if words else None
         if module is not None and importlib.util.find_spec(module) is not None:
             return self.ours(words[0], module, *VARIANTS.get(words[0], ()), *words[1:])
@@ -73,12 +73,11 @@ class Programs:
 
     def application(self, number: int) -> Command:
         """The command line of the n-th [APPLICATIONS]APP, counted from 1; ConfigError where there is none."""
-        text = self._ini.findall("APPLICATIONS", "APP")[number - 1]
-        words = shlex.split(text)
+        words = self._ini.words("APPLICATIONS", "APP", num=number)
         executable = self._executable(os.path.expanduser(words[0])) if words else None
         if executable is None:
             place = self._ini.place("APPLICATIONS", "APP", number)
-            raise ConfigError(f"[APPLICATIONS]APP = {text}: no such program", place)
+            raise ConfigError(f"[APPLICATIONS]APP = {shlex.join(words)}: no such program", place)
         return Command(executable, words[1:])
 
     def _executable(self, name: str) -> str | None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -178,9 +179,16 @@ class IniFile:
         words = {word.upper(): meaning for word, meaning in table.items()}
         return self._typed(section, key, default, num, lambda text: words[text.upper()], f"one of {', '.join(table)}")
 
+    def words(self, section: str, key: str, default: str = "", *, num: int = 1) -> list[str]:
+        """A command line or a file name with arguments, split as a shell does; ConfigError where a quote stays open."""
+        try:
+            return shlex.split(self.find(section, key, default, num))
+        except ValueError:
+            raise self.error(section, key, f"{self.find(section, key)}: a quote stays open; close it", num) from None
+
     def resolve(self, name: str) -> Path:
         """The path that a file name in this INI file means."""
-        return (self.file.parent / Path(name).expanduser()).absolute()
+        return (self.file.parent / os.path.expanduser(name)).absolute()
 
     def error(self, section: str, key: str, message: str, num: int = 1) -> ConfigError:
         """An error about an entry, to raise: names the place and the entry."""
@@ -260,8 +268,8 @@ def _logical_lines(path: Path, remarks: list[str], depth: int = 0) -> Iterator[t
         if not joined:
             start = number
             if include := _INCLUDE.match(line):
-                included = path.parent / Path(os.path.expandvars(include[1].strip())).expanduser()
-                if included.is_file():
+                included = path.parent / os.path.expanduser(os.path.expandvars(include[1].strip()))
+                if os.path.isfile(included):
                     yield from _logical_lines(included, remarks, depth + 1)
                 else:
                     remarks.append(f"{path}:{number}: #INCLUDE of a missing file: {included}")
@@ -281,9 +289,13 @@ def _lines(path: Path) -> list[str]:
     """Lines end with LF or CR LF; any other character, a lone CR too, is part of one, as for LinuxCNC."""
     try:
         with path.open(encoding="utf-8", errors="surrogateescape", newline="") as file:
-            return [line.removesuffix("\r") for line in file.read().split("\n")]
+            lines = [line.removesuffix("\r") for line in file.read().split("\n")]
     except OSError as error:
         raise ConfigError(f"cannot read the INI file: {error.strerror}", Place(str(path))) from None
+    for number, line in enumerate(lines, 1):
+        if "\0" in line:
+            raise ConfigError("a zero byte, so this is no INI file; one is plain text, in UTF-8", Place(str(path), number))
+    return lines
 
 
 def _number(text: str) -> str:

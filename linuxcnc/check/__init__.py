@@ -57,4 +57,12 @@ def findings(path: Path, rules: tuple[Rule, ...] = RULES) -> list[str]:
         checked = Checked(IniFile(path))
     except ConfigError as error:
         return [str(error)]
-    return list(dict.fromkeys(finding for rule in rules for finding in rule(checked)))
+    return list(dict.fromkeys(finding for rule in rules for finding in _found(rule, checked)))
+
+
+def _found(rule: Rule, checked: Checked) -> Iterator[str]:
+    """What a rule finds; an entry that it cannot even read is a finding too."""
+    try:
+        yield from rule(checked)
+    except ConfigError as error:
+        yield str(error)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import os
 import re
-import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -32,8 +32,8 @@ def lines(checked: Checked) -> Iterator[str]:
 def hal_files(checked: Checked) -> Iterator[str]:
     """HAL files are there; what they use of the INI file is gathered."""
     for key in HAL_FILE_KEYS:
-        for number, text in enumerate(checked.ini.findall("HAL", key), 1):
-            name = shlex.split(text)[0]
+        for number in range(1, len(checked.ini.findall("HAL", key)) + 1):
+            name = checked.ini.words("HAL", key, num=number)[0]
             path = find_hal_file(name, [checked.folder])
             if path is None:
                 place = checked.ini.place("HAL", key, number)
@@ -96,7 +96,7 @@ def nml_file(checked: Checked) -> Iterator[str]:
     if name is None:
         return
     path = checked.ini.resolve(name)
-    if not path.is_file():
+    if not os.path.isfile(path):
         right = "leave the entry out to use the built-in one"
         yield finding(checked.place("EMC", "NML_FILE"), f"[EMC]NML_FILE = {name}: no such file", right)
         return

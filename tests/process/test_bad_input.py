@@ -35,11 +35,30 @@ def test_an_unreadable_ini_file(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("content", "place"),
+    [
+        (b"\x7fELF\x02\x01\x01\0\0", ":1"),
+        ("[EMC]\nMACHINE = a mill\n".encode("utf-16"), ":1"),
+        (b"", ""),
+        (b"loadrt trivkins\nloadrt motmod num_joints=3\n", ""),
+    ],
+    ids=["a program", "UTF-16", "empty", "a HAL file"],
+)
+def test_a_file_that_is_no_ini_file(tmp_path, content, place):
+    ini = tmp_path / "some.ini"
+    ini.write_bytes(content)
+    assert re.match(rf"{ini}{place}: .*no INI file", fails(ini))
+
+
+@pytest.mark.parametrize(
     ("entry", "value"),
     [
         ("KINS.JOINTS", "three"),
         ("KINS.JOINTS", "99"),
         ("HAL.HALFILE", "none.hal"),
+        ("HAL.HALFILE", "'mill.hal"),
+        ("DISPLAY.DISPLAY", 'web --port "8080'),
+        ("EMCMOT.EMCMOT", "motmod\nHOMEMOD = 'homemod"),
         ("TASK.TASK", "notask"),
         ("DISPLAY.DISPLAY", "nodisplay"),
         ("TRAJ.LINEAR_UNITS", "furlong"),
