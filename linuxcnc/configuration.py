@@ -49,7 +49,8 @@ class Configuration:
         self.overrides = overrides or Overrides()
         self.ini = IniFile(self.path)
         if not any(self.ini.sections()):
-            raise ConfigError("no [SECTION] in it, so this is no INI file; name the INI file of a machine", Place(str(self.path)))
+            wrong = "no [SECTION] in it, so this is no INI file; name the INI file of a machine"
+            raise ConfigError(wrong, Place(str(self.path)))
         self.programs = Programs(self.ini)
         self.ini.integer("KINS", "JOINTS", minimum=1, maximum=16)
         self.ini.find("TRAJ", "COORDINATES")

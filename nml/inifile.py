@@ -294,7 +294,8 @@ def _lines(path: Path) -> list[str]:
         raise ConfigError(f"cannot read the INI file: {error.strerror}", Place(str(path))) from None
     for number, line in enumerate(lines, 1):
         if "\0" in line:
-            raise ConfigError("a zero byte, so this is no INI file; one is plain text, in UTF-8", Place(str(path), number))
+            wrong = "a zero byte, so this is no INI file; one is plain text, in UTF-8"
+            raise ConfigError(wrong, Place(str(path), number))
     return lines
 
 
