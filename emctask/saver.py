@@ -19,6 +19,8 @@ class Saver:
         self._wanted = threading.Event()
         self._closing = False
         self.failure = ""
+        """What is to be told; a failure that lasts is told once."""
+        self._last = ""  # the failure of the last write
         self._thread = threading.Thread(target=self._run, name="parameters", daemon=True)
         self._thread.start()
 
@@ -27,22 +29,26 @@ class Saver:
         self._wanted.set()
 
     def take_failure(self) -> str:
-        """Why the last write failed; empty if it did not, or was told already."""
+        """Why a write failed; empty if none did, or that was told already."""
         failure, self.failure = self.failure, ""
         return failure
 
     def close(self, timeout_s: float = 5.0) -> None:
-        """Write once more and end the thread."""
+        """Write once more and end the thread; a failure that nobody can take any more is logged."""
         self._closing = True
         self._wanted.set()
         self._thread.join(timeout_s)
+        if self.failure:
+            log.warning("%s", self.take_failure())
 
     def _run(self) -> None:
         while not self._closing:
             self._wanted.wait()
             self._wanted.clear()
+            failure = ""
             try:
                 self._save()
             except (OSError, PyemcError) as error:
-                self.failure = f"the parameter file cannot be written: {error}"
-                log.warning("%s", self.failure)
+                failure = str(error)
+            if failure != self._last:
+                self._last = self.failure = failure

@@ -66,4 +66,4 @@ def save(path: str | Path, numbers: Iterable[int], value: Callable[[int], float]
         os.replace(fresh, target)
     except OSError as error:
         fresh.unlink(missing_ok=True)
-        raise ConfigError(f"Cannot write parameter file: '{path}' ({error.strerror})", Place(str(path))) from error
+        raise ConfigError(f"the parameter file cannot be written: {error.strerror}", Place(str(path))) from error
