@@ -39,7 +39,8 @@ DECLARED: dict[str, Declaration] = {}
 class Entry:
     """A pin or parameter; ``count`` of them where the name has a field: ``{}``, ``{:02}``, ``{letter}`` for A to E.
 
-    ``{type}`` in a name is the type's name, where that depends on the personality; ``{word}`` is one of ``words``.
+    ``{type}`` in a name is the type's name, where that depends on the personality; ``{word}`` is one of ``words``;
+    ``{row}`` and ``{column}`` are the number's in a table that is as wide as ``columns`` says.
     """
 
     is_pin: bool
@@ -53,13 +54,18 @@ class Entry:
     personal: Callable[[int], int] | None = None  # how many of ``count`` exist for a personality
     type_of: Callable[[int], int] | None = None  # the type for a personality
     default_of: Callable[[int, int], Any] | None = None  # the default for a number and a personality
+    dir_of: Callable[[int], int] | None = None  # the direction for a personality
+    columns: Callable[[int], int] | None = None  # by personality
 
     def items(self, personality: int) -> Iterator[tuple[str, int, Any]]:
         """Name, type and default of each that exists for the personality."""
         type_ = self.type_of(personality) if self.type_of else self.type
         for i in range(self.personal(personality) if self.personal else self.count):
             word = self.words[i] if self.words else ""
-            name = self.name.format(i, letter="ABCDE"[i % 5], type=TYPE_NAMES[type_], word=word)
+            row, column = divmod(i, self.columns(personality)) if self.columns else (0, 0)
+            name = self.name.format(
+                i, letter="ABCDE"[i % 5], type=TYPE_NAMES[type_], word=word, row=row, column=column
+            )  # fmt: skip
             yield name, type_, self.default_of(i, personality) if self.default_of else self.default
 
 
@@ -101,6 +107,7 @@ class Declaration:
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
     sizes: bool = False  # `counted_by` takes a list, a personality for each instance
+    names_beside: bool = False  # `names=` has a name for each of that list
     options: tuple[str, ...] = ()  # further parameters, which `decode` understands
     decode: Callable[[dict[str, str]], list[int]] | None = None  # personalities from the parameters
     state: tuple[int, ...] = ()  # machine words behind the pins
@@ -127,7 +134,7 @@ class Declaration:
         for key in args:
             if key not in allowed:
                 raise HalError(f"{self.name}: unknown parameter '{key}'; {', '.join(allowed)} are known")
-        if self.counted_by in args and "names" in args:
+        if self.counted_by in args and "names" in args and not self.names_beside:
             raise HalError(f"{self.name}: {self.counted_by}= and names= cannot be given together")
 
     def instances(self, args: dict[str, str]) -> list[str]:
@@ -170,8 +177,9 @@ class Declaration:
         offset = 0
         for entry in self.entries:
             make = comp.pin if entry.is_pin else comp.param
+            direction = entry.dir_of(personality) if entry.dir_of else entry.dir
             for i, (name, type_, default) in enumerate(entry.items(personality)):
-                item = make(f"{instance}{self.separator}{name}", type_, entry.dir, default)
+                item = make(f"{instance}{self.separator}{name}", type_, direction, default)
                 memory.put(offset + i * WORD, item.address)
             offset += entry.count * WORD
         for i, word in enumerate((*self.state, personality) if self.keep_personality else self.state):

@@ -19,10 +19,15 @@ LinuxCNC's manual pages. Every function also has a pin `.time` and parameters `.
 """
 
 
+FIELDS = {
+    "{letter}": "M", "{:02}": "MM", "{}": "M", "{type}": "TYPE", "{row:x}": "R", "{column:x}": "C", "{word}": "AXIS",
+}  # fmt: skip
+
+
 def placeholder(entry: Entry) -> str:
     """The entry's name with its numbers as `M`."""
     name = entry.name
-    for field, shown in (("{letter}", "M"), ("{:02}", "MM"), ("{}", "M"), ("{type}", "TYPE"), ("{word}", "AXIS")):
+    for field, shown in FIELDS.items():
         name = name.replace(field, shown)
     return name
 
@@ -33,6 +38,8 @@ def instance(declaration: Declaration) -> str:
 
 
 def direction(entry: Entry) -> str:
+    if entry.dir_of:
+        return "in or out"
     if entry.is_pin:
         return "in" if entry.dir == IN else "out" if entry.dir == OUT else "in/out"
     return "parameter" if entry.dir == RW else "parameter, read only"

@@ -65,6 +65,16 @@ def presses(longest: int, pins: int = 1) -> Callable[[random.Random], Rows]:
     return rows
 
 
+def patterns(pins: int, hold: int) -> Callable[[random.Random], Rows]:
+    """Bits that change together, every `hold` periods."""
+
+    def rows(chance: random.Random) -> Rows:
+        for _ in range(SAMPLES // hold):
+            yield from [[chance.randrange(2) for _ in range(pins)]] * hold
+
+    return rows
+
+
 def steps(*heights: float, hold: int = 40) -> Callable[[random.Random], Rows]:
     """Each input jumps to a new value every `hold` periods."""
 
@@ -87,6 +97,17 @@ def turning(counts: int = 60) -> Callable[[random.Random], Rows]:
             yield [(count >> 1) & 1, ((count + 1) >> 1) & 1, int(count % 40 == 0)]
 
     return rows
+
+
+def typing(chance: random.Random) -> Rows:
+    """Keycodes of a pad of 2 x 3 keys on which at most two are held; LinuxCNC's counts a key twice that it left out."""
+    held: list[int] = []
+    for _ in range(SAMPLES):
+        if held and (len(held) == 2 or chance.random() < 0.5):
+            yield [0x80 | held.pop(chance.randrange(len(held)))]
+        else:
+            held.append(chance.choice([key for key in (0, 1, 2, 4, 5, 6) if key not in held]))
+            yield [0xC0 | held[-1]]
 
 
 CASES = {
@@ -335,6 +356,16 @@ CASES = {
         lambda chance: ([40.0 if i // 100 % 2 else -7.3, i < 350] for i in range(SAMPLES)),
         "limit3.0.maxv=900 limit3.0.maxa=20000 limit3.0.min=-5.5 limit3.0.max=33.3",
         0.03,  # rounding may move the last step by a period
+    ),
+    "matrix_kb": Case(
+        "matrix_kb config=2x3", "matrix_kb.0", "u:matrix_kb.0.keycode",
+        " ".join(f"b:matrix_kb.0.key.r{r}c{c}" for r in range(2) for c in range(3)),
+        typing,
+    ),
+    "matrix_kb-scan": Case(
+        "matrix_kb config=3x4s names=k", "k", " ".join(f"b:k.col-0{c}-in" for c in range(4)),
+        "b:k.row-00-out b:k.row-01-out b:k.row-02-out u:k.keycode "
+        + " ".join(f"b:k.key.r{r}c{c}" for r in range(3) for c in range(4)), patterns(4, 20), "k.key_rollover=12",
     ),
     "histobins": Case(
         "histobins", "histobins.0", "f:histobins.0.input s:histobins.0.index b:histobins.0.reset",

@@ -52,6 +52,10 @@ def plain(name: str) -> str:
     return re.sub(r"bit\.\{\}\.|-\{type\}|\{.*?\}|[-_.0-9]", "", name).lower()
 
 
+SPECIAL = {
+    "mux_generic": "bb2,fs3", "matrix_kb": "2x3,4x8s", "charge_pump": "1", "thc": "1", "thcud": "1", "watchdog": "3",
+}  # fmt: skip
+"""What `loadrt` is given where two instances, or sizes of 2 and 1, are not possible."""
 LITERAL = sorted(name for name, declaration in DECLARED.items() if struct_of(declaration))
 
 
@@ -70,8 +74,7 @@ def test_the_table_names_the_members_of_the_struct_in_order(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(DECLARED))
 def test_it_loads_runs_in_a_thread_and_unloads(host: Host, name: str) -> None:
     declaration = DECLARED[name]
-    special = {"mux_generic": "bb2,fs3", "charge_pump": "1", "thc": "1", "thcud": "1", "watchdog": "3"}
-    words = [f"{declaration.counted_by}={special.get(name, '2,1' if declaration.sizes else '2')}"]
+    words = [f"{declaration.counted_by}={SPECIAL.get(name, '2,1' if declaration.sizes else '2')}"]
     host.load("threads", ["name1=t", "period1=100000"])
     host.load(name, words)
     functions = [funct.name for funct in host.hal.segment.functs()]

@@ -52,7 +52,7 @@ def test_variables_are_put_in(ini: IniFile, monkeypatch: pytest.MonkeyPatch, lin
 @pytest.mark.parametrize(
     ("line", "what"),
     [
-        ("setp a [KINS JOINTS", "Missing close square bracket"), ("setp a [KINS](JOINTS 1", "Missing close parenthesis"),
+        ("setp a [KINS JOINTS", "Missing close square"), ("setp a [KINS](JOINTS 1", "Missing close parenthesis"),
         ("print $(HOME", "Missing close parenthesis"), ("print $", "Empty variable name"), ("print a[0]", "Empty"),
         ('print "a b', "unterminated quoted string"), ("print it's", "unterminated quoted string"),
         ('print "a # b', "unterminated quoted string"),
