@@ -7,10 +7,10 @@
 """
 
 from libc.errno cimport errno
-from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_RDWR
+from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_RDWR, posix_fallocate
 from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, munmap
 from posix.time cimport CLOCK_MONOTONIC, clock_gettime, clockid_t, timespec
-from posix.unistd cimport close, ftruncate, getpid, usleep
+from posix.unistd cimport close, getpid, usleep
 
 from hal.port cimport hal_port
 
@@ -86,8 +86,8 @@ cdef class Mapping:
         fresh = st.st_size == 0
         if st.st_nlink == 0 or (fresh and flock(self.fd, LOCK_EX | LOCK_NB) != 0):
             return self._leave()
-        if fresh and ftruncate(self.fd, sizeof(hal_segment)) != 0:
-            raise HalError("no room for the HAL segment in shared memory", -12)
+        if fresh and posix_fallocate(self.fd, 0, sizeof(hal_segment)) != 0:
+            raise HalError(f"no room for the {sizeof(hal_segment)} bytes of the HAL segment in /dev/shm", -12)
         if not fresh and st.st_size != sizeof(hal_segment):
             self._leave()
             raise HalError(f"{self.path.decode()} was made by another version; end that session (halrun -U) first")

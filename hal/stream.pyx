@@ -6,9 +6,9 @@ the realtime end, ``halsampler`` and ``halstreamer`` (``hal.sampling``) at the o
 
 import errno
 
-from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_EXCL, O_RDWR
+from posix.fcntl cimport O_CLOEXEC, O_CREAT, O_EXCL, O_RDWR, posix_fallocate
 from posix.mman cimport MAP_FAILED, MAP_SHARED, PROT_READ, PROT_WRITE, mmap, munmap
-from posix.unistd cimport close, ftruncate
+from posix.unistd cimport close
 
 from hal._shm import BIT, FLOAT, S32, S64, U32, U64
 from nml.errors import HalError
@@ -112,7 +112,7 @@ cdef class Stream:
         fd = shm_open(self.path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0o600)
         depth = max(depth - 1, <size_t>1)  # as in LinuxCNC, where one place of the ring stays free
         self.size = sizeof(hal_fifo) + depth * (len(types) + 1) * sizeof(hal_cell)
-        if fd < 0 or ftruncate(fd, self.size) != 0:
+        if fd < 0 or posix_fallocate(fd, 0, self.size) != 0:
             raise HalError(f"cannot make the stream {self.path.decode()}", -12)
         self._map(fd)
         self.fifo.depth, self.fifo.columns = depth, len(types)

@@ -115,10 +115,17 @@ class Instance:
                 clock.host_sleep(POLL)
                 continue
             if self._is_current(file):
-                os.ftruncate(file, 0)
-                os.pwrite(file, str(ProcessRecord.of(os.getpid(), "linuxcnc")).encode(), 0)
+                self._sign(file)
                 return file
             os.close(file)
+
+    def _sign(self, file: int) -> None:
+        """Note whose the lock is."""
+        os.ftruncate(file, 0)
+        try:
+            os.pwrite(file, str(ProcessRecord.of(os.getpid(), "linuxcnc")).encode(), 0)
+        except OSError as reason:
+            raise OSError(reason.errno, reason.strerror, str(self._path)) from None
 
     def _is_current(self, file: int) -> bool:
         """Whether the locked file is still the one of that name; a former owner may have removed it meanwhile."""

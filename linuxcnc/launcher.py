@@ -96,6 +96,9 @@ def _launch(options: argparse.Namespace) -> int:
         if ini is not None and not started:
             held += _other_findings(ini, [*said, *held])
         return 1
+    except OSError as reason:
+        held.append(f"{reason.filename or namespace.runtime_dir()}: {reason.strerror}; the machine needs this place")
+        return 1
     finally:
         for line in held:
             to_stderr(line)

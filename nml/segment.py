@@ -122,6 +122,13 @@ class Segment:
             raise BufferError_(f"buffer {self.name}: {self.path or self.shm} is not this user's alone")
         same_size = status.st_size == self.layout.size
         os.ftruncate(self.fd, self.layout.size)
+        try:
+            os.posix_fallocate(self.fd, 0, self.layout.size)  # else whoever writes first dies of a bus error
+        except OSError as error:
+            os.ftruncate(self.fd, 0)
+            place = self.path or _SHM_FOLDER
+            message = f"buffer {self.name}: no room for its {self.layout.size} bytes in {place}: {error.strerror}"
+            raise BufferError_(message) from None
         with mmap.mmap(self.fd, self.layout.size) as memory:
             if self.path is not None and same_size and self.layout.complete(memory):
                 self.layout.renew(memory)

@@ -1,10 +1,13 @@
 """What a person got wrong is said in one line with its place, the exit code is not 0, and nothing is left running."""
 
+import os
 import re
+import subprocess
+import sys
 
 import pytest
 
-from tests.support.machine import Run, copy_mill, traces
+from tests.support.machine import PATIENCE, ROOT, Run, copy_mill, traces
 
 pytestmark = pytest.mark.process
 
@@ -16,6 +19,19 @@ def fails(ini, *options, speed=20.0) -> str:
     assert traces() == []
     (line,) = run.errors.strip().splitlines()
     return line
+
+
+def in_private_mounts(ini, mounts) -> subprocess.CompletedProcess[str]:
+    """Start a machine where ``mounts``, commands for a shell, are done before; skipped where nothing may be mounted."""
+    private = ["unshare", "--mount", "sh", "-c"]
+    if subprocess.run([*private, "mount -t tmpfs none /mnt"], capture_output=True).returncode:
+        pytest.skip("needs the right to mount a file system")
+    command = f'{mounts}; exec "$0" -m linuxcnc_start "$1"'
+    environment = {**os.environ, "HOME": str(ini.parent), "PYTHONPATH": str(ROOT)}
+    return subprocess.run(
+        [*private, command, sys.executable, str(ini)],
+        cwd=ini.parent, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE,
+    )  # fmt: skip
 
 
 def program(folder, text):
@@ -123,6 +139,31 @@ def test_a_namespace_that_is_in_use(tmp_path):
     finally:
         assert first.stop() == 143
     assert traces() == []
+
+
+@pytest.mark.parametrize("size", ["64k", "9m"])
+def test_too_little_shared_memory(tmp_path, size):
+    """Said by whoever makes memory, so that nobody dies of a bus error while it runs."""
+    ini = copy_mill(tmp_path)
+    done = in_private_mounts(ini, f"mount -t tmpfs -o size={size} none /dev/shm")
+    assert done.returncode == 1, done.stderr
+    assert re.search(r"no room for .* bytes .*in /dev/shm", done.stderr.splitlines()[-1]), done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "words"), [("size=64k", "No space left on device"), ("ro", "Read-only file system")], ids=["full", "ro"]
+)
+def test_a_folder_of_run_time_files_that_cannot_be_written(tmp_path, option, words):
+    run_time = tmp_path / "run"
+    run_time.mkdir()
+    mount = f"mount -t tmpfs -o {option} none {run_time} && export XDG_RUNTIME_DIR={run_time}"
+    fill = f"head -c 1M /dev/zero 2>/dev/null > {run_time}/ballast" if option != "ro" else "true"
+    done = in_private_mounts(copy_mill(tmp_path), f"{mount}; {fill}")
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"{run_time}/pyemc")
+    assert words in line
 
 
 @pytest.mark.parametrize(("option", "value"), [("--speed", "0"), ("--namespace", "a/b")])
