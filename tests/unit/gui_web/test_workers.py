@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 
 from gui.web.workers import Workers, end_worker
 from tests.support.machine import MILL
@@ -37,6 +38,19 @@ def test_a_spare_worker_that_was_killed_is_replaced():
         await workers._refilling
         await end_worker(workers._spare)
         assert await ask(workers) == 5.0
+        await workers.close()
+
+    asyncio.run(work())
+
+
+def test_ctrl_c_of_the_terminal_does_not_reach_a_worker():
+    """The pool ends it; a worker that ended at the same time would be reported as unknown."""
+
+    async def work():
+        workers = Workers("rs274ngc.dryrun")
+        worker = await workers.start(*QUESTION)
+        assert os.getsid(worker.pid) == worker.pid
+        await worker.communicate()
         await workers.close()
 
     asyncio.run(work())
