@@ -6,12 +6,13 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from nml.errors import ConfigError, InterpError
 from rs274ngc import tooltable
+from rs274ngc.canon import Tool
 from rs274ngc.interp import Interpreter
 from rs274ngc.printer import PrintCanon
 
@@ -52,6 +53,17 @@ def read_ini(path: str) -> Any:
     return IniFile(path)
 
 
+def tools_of(options: argparse.Namespace) -> Sequence[Tool]:
+    """The tools of ``-t``, else the usual ones; none where the table cannot be read, which LinuxCNC does not say."""
+    if not options.tools:
+        return tooltable.DEFAULT
+    try:
+        return tooltable.load(options.tools)
+    except ConfigError as error:
+        print(f"{error}; there are no tools", file=sys.stderr)
+        return ()
+
+
 def report(error: InterpError, stack: bool) -> None:
     """An error on the standard error output: message and block in LinuxCNC's form, the place first for people."""
     if error.place is not None and (stack or sys.stderr.isatty()):
@@ -65,7 +77,7 @@ def show_figures(options: argparse.Namespace) -> int:
     """``--stats``, ``--json`` and ``--plot``."""
     from rs274ngc import plot, preview, stats
 
-    machine: dict[str, Any] = {"tools": tooltable.load(options.tools)} if options.tools else {}
+    machine: dict[str, Any] = {"tools": tools_of(options)} if options.tools else {}
     with progress_bar(options.input) as progress:
         ini = read_ini(options.ini) if options.ini else None
         result = preview.load(options.input, ini, progress=progress, parameter_file=options.parameters, **machine)
@@ -123,7 +135,7 @@ def main(arguments: list[str] | None = None) -> int:
             return show_figures(options)
         if options.output:
             output = os.open(options.output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
-        canon = PrintCanon(output, tools=tooltable.load(options.tools) if options.tools else tooltable.DEFAULT)
+        canon = PrintCanon(output, tools=tools_of(options))
         canon.block_delete = options.block_delete
         interp = Interpreter(canon, read_ini(options.ini) if options.ini else None)
         canon.state = interp.state

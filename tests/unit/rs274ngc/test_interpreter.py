@@ -165,6 +165,18 @@ def test_the_command_reports_an_error_as_programs_expect_it_and_its_place_when_a
     assert re.fullmatch(rf"executing\npart\.ngc:2(:\d+)?:\n{message}", capfd.readouterr().err)
 
 
+def test_without_its_tool_table_a_program_runs_and_has_no_tools(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.ngc").write_text("g0 x1\nm2\n")
+    assert rs274.main(["-t", "none.tbl", "-g", "part.ngc"]) == 0
+    shown = capfd.readouterr()
+    assert "STRAIGHT_TRAVERSE(1.0000" in shown.out
+    assert shown.err.startswith("none.tbl: Cannot open none.tbl (No such file or directory); there are no tools\n")
+    (tmp_path / "part.ngc").write_text("t1 m6\nm2\n")
+    assert rs274.main(["-t", "none.tbl", "-g", "part.ngc"]) == 1
+    assert "tool 1 not found" in capfd.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("ini", "active", "first"),
     [(None, 1.0, 2.0), ("", 1.0, 2.0), ("DISABLE_G92_PERSISTENCE = 1", 0.0, 0.0)],
