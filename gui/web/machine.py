@@ -1,7 +1,8 @@
 """The connection to task: status and messages that come, orders that go; threads here, asyncio for everybody else.
 
-One thread follows the status and tells when an order is over, one reads operator messages, and orders go out through
-threads of their own, so that nothing that task takes long for delays a stop: ``urgent`` has its own connection.
+One thread follows the status and what task tells of the end of each order, one reads operator messages, and orders go
+out through threads of their own, so that nothing that task takes long for delays a stop: ``urgent`` has its own
+connection.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import linuxcnc
@@ -24,6 +25,11 @@ from gui.web.messages import KINDS
 from linuxcnc._connection import open_channel
 from linuxcnc._error import text_of
 from nml import clock
+from nml.emc import EMC_ORDER_RESULT
+from nml.emc.constants import ORDER_OUTCOME
+from nml.emc.orders import RESULT_BUFFER
+from nml.errors import NmlError
+from nml.message import Message
 
 LOOK = 0.25  # s between looks whether the server ends
 FAST = 0.004  # s between looks at the status while an order or a jog is under way
@@ -32,8 +38,7 @@ LONG_EVERY = 4  # statuses from one with the long arrays of inputs and outputs t
 SERIALS_KEPT = 512
 SILENT_AFTER = 1.5  # s without a new status
 PATIENCE = 600.0  # s that an order may take
-FIRST_WORD = 1.0  # s in which the first message of an order that has failed arrives, also on a busy computer
-LAST_WORDS = 0.06  # s in which the others arrive
+HAPPY = (None, ORDER_OUTCOME.DONE)  # ends of orders that nothing went wrong with, so far
 SETTLED = 5.0  # s until a state that an order has brought about is seen; a busy computer takes its time
 
 
@@ -46,11 +51,12 @@ class Lane(enum.Enum):
 
 
 @dataclass(slots=True)
-class Waiting:
-    """An order that was given and is not over."""
+class End:
+    """What task has told of an order so far."""
 
-    future: asyncio.Future[int]
-    serial: int
+    outcome: ORDER_OUTCOME | None = None
+    texts: list[str] = field(default_factory=list)
+    """The errors that belong to it."""
 
 
 class Machine:
@@ -72,12 +78,12 @@ class Machine:
         self._lanes = {lane: (ThreadPoolExecutor(1, f"web-{lane.value}"), linuxcnc.command()) for lane in Lane}
         for _, command in self._lanes.values():
             command.origin = f"web[{os.getpid()}]"
-        self._waiting: list[Waiting] = []
-        self._texts: dict[int, list[str]] = {}
+        self._results = open_channel(RESULT_BUFFER)
+        self._ends: dict[int, End] = {}  # of the newest orders, by serial number
+        self._waiting: dict[int, asyncio.Future[None]] = {}  # for the end of an order, by serial number
         self._own: deque[int] = deque(maxlen=SERIALS_KEPT)  # serial numbers of orders of ours
         self._closely = False
         self._changed = asyncio.Event()
-        self._heard = asyncio.Event()
         self._over = threading.Event()
         self._hurry = threading.Event()
         self._threads = [
@@ -104,32 +110,33 @@ class Machine:
     def _follow(self) -> None:
         """Thread: pass on each status, at most one a cycle, but one after an order of anybody soon.
 
-        While an order of ours is under way look oftener.
+        While an order of ours is under way look oftener. Its end is passed on with a status that was read after it, for
+        task tells it after the status that shows it.
         """
-        status, shown, heard, told = self._status, float("-inf"), clock.host_now(), (0, 0)
+        status, shown, heard, shown_ends = self._status, float("-inf"), clock.host_now(), (0, 0)
         looks = -1
         while not self._over.is_set():
             try:
-                fresh = status.wait(LOOK)
+                told = self._read_results()
+                fresh = status.wait(0.0 if told else LOOK)
+                told += self._read_results()
                 status.poll()
-            except linuxcnc.error as reason:
-                self._tell({"machine": str(reason)}, None)
+            except (linuxcnc.error, NmlError) as reason:
+                self._tell({"machine": str(reason)}, [])
                 self._over.wait(LOOK)
                 continue
             now = clock.host_now()
-            if not fresh:
+            if not fresh and not told:
                 if now - heard > SILENT_AFTER:
-                    self._tell({"machine": "task does not answer"}, None)
+                    self._tell({"machine": "task does not answer"}, [])
                 continue
             heard = now
             ends = (status.echo_serial_number, status.state)
             soonest = 0.0 if self._hurry.is_set() else BRISK
-            if now - shown >= (self._period if ends == told else soonest):
-                shown, told = now, ends
+            if told or now - shown >= (self._period if ends == shown_ends else soonest):
+                shown, shown_ends = now, ends
                 looks += 1
-                self._tell({"machine": "ok", **readout.read(status, looks % LONG_EVERY == 0)}, ends)
-            else:
-                self._tell(None, ends)
+                self._tell({"machine": "ok", **readout.read(status, looks % LONG_EVERY == 0)}, told)
             self._pause(shown + self._cycle - clock.host_now())
 
     @property
@@ -146,31 +153,46 @@ class Machine:
     def _pause(self, rest: float) -> None:
         """Sleep until the next status is due; an order under way cuts it short."""
         if self._hurry.is_set():
-            self._over.wait(FAST)
+            self._results.wait(FAST)
         elif rest > 0.0:
             self._hurry.wait(min(rest, BRISK))
 
-    def _tell(self, values: dict[str, Any] | None, ends: tuple[int, int] | None) -> None:
-        if not self._over.is_set():
-            self._loop.call_soon_threadsafe(self._take, values, ends)
+    def _read_results(self) -> list[Message]:
+        """In the thread: what task has told of orders."""
+        told = []
+        while (message := self._results.read()) is not None:
+            told.append(message)
+        return told
 
-    def _take(self, values: dict[str, Any] | None, ends: tuple[int, int] | None) -> None:
-        """In the event loop: a status has come."""
-        if values is not None:
-            self.values |= values
-            self._on_status(values)
-            self._changed.set()
-            self._changed.clear()
-        if ends is None:
-            return
-        echo, state = ends
-        for order in list(self._waiting):
-            if echo > order.serial or (echo == order.serial and state != linuxcnc.RCS_EXEC):
-                self._waiting.remove(order)
-                if not order.future.done():
-                    order.future.set_result(state if echo == order.serial else linuxcnc.RCS_DONE)
+    def _tell(self, values: dict[str, Any], told: list[Message]) -> None:
+        if not self._over.is_set():
+            self._loop.call_soon_threadsafe(self._take, values, told)
+
+    def _take(self, values: dict[str, Any], told: list[Message]) -> None:
+        """In the event loop: a status has come, and what task told of orders before it was read."""
+        self.values |= values
+        self._on_status(values)
+        self._changed.set()
+        self._changed.clear()
+        for message in told:
+            self._note(message)
         if not self._waiting and not self._closely:
             self._hurry.clear()
+
+    def _note(self, message: Message) -> None:
+        """Keep what task told of an order; at its end go on with whoever waits for it."""
+        if isinstance(message, EMC_ORDER_RESULT):
+            self._end_of(message.serial).outcome = ORDER_OUTCOME(message.outcome)
+            waiting = self._waiting.pop(message.serial, None)
+            if waiting is not None and not waiting.done():
+                waiting.set_result(None)
+        elif KINDS.get(message.TYPE_ID) == "error":
+            self._end_of(int(getattr(message, "id", 0))).texts.append(text_of(message))
+
+    def _end_of(self, serial: int) -> End:
+        while len(self._ends) > SERIALS_KEPT:
+            del self._ends[next(iter(self._ends))]
+        return self._ends.setdefault(serial, End())
 
     async def reach(self, condition: Callable[[dict[str, Any]], object], timeout: float = SETTLED) -> bool:
         """Wait until the status map fulfils a condition; false after ``timeout`` s."""
@@ -190,24 +212,8 @@ class Machine:
             self._errors.wait(LOOK)
             while not self._over.is_set() and (message := self._errors.read()) is not None:
                 kind = KINDS.get(message.TYPE_ID, "text")
-                self._loop.call_soon_threadsafe(self._hear, kind, text_of(message), int(getattr(message, "id", 0)))
-
-    def _hear(self, kind: str, text: str, serial: int) -> None:
-        if kind == "error" and serial:
-            self._texts.setdefault(serial, []).append(text)
-            for old in list(self._texts)[:-100]:
-                del self._texts[old]
-            self._heard.set()
-            self._heard.clear()
-        self._on_message(kind, text, serial)
-
-    async def _hear_out(self, serial: int) -> None:
-        """Wait for what task has to say about an order that has failed."""
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(FIRST_WORD):
-                while serial not in self._texts:
-                    await self._heard.wait()
-        await asyncio.sleep(LAST_WORDS)
+                number = int(getattr(message, "id", 0))
+                self._loop.call_soon_threadsafe(self._on_message, kind, text_of(message), number)
 
     # --- orders ----------------------------------------------------------------------------------------------------
 
@@ -231,50 +237,43 @@ class Machine:
 
     async def finished(self, serial: int) -> int:
         """Wait for the end of an order that was given."""
-        waiting = Waiting(self._loop.create_future(), serial)
-        self._waiting.append(waiting)
-        self._hurry.set()
-        try:
-            async with asyncio.timeout(PATIENCE):
-                result = await waiting.future
-        except TimeoutError:
-            raise CallError("machine", "the machine has not finished it yet", messages=[]) from None
-        finally:
-            if waiting in self._waiting:
-                self._waiting.remove(waiting)
-        if result == linuxcnc.RCS_ERROR:
-            await self._hear_out(serial)
-        self._complain(serial, result)
+        end = self._end_of(serial)
+        if end.outcome is None:
+            waiting = self._waiting[serial] = self._loop.create_future()
+            self._hurry.set()
+            try:
+                async with asyncio.timeout(PATIENCE):
+                    await waiting
+            except TimeoutError:
+                raise CallError("machine", "the machine has not finished it yet", messages=[]) from None
+            finally:
+                self._waiting.pop(serial, None)
+        if end.outcome is ORDER_OUTCOME.ABORTED:
+            raise CallError("aborted", "aborted")
+        if end.outcome is not ORDER_OUTCOME.DONE:
+            said = "; ".join(end.texts)
+            text = "{reason}" if said else "the machine refused it"
+            raise CallError("machine", text, reason=said, messages=end.texts)
         return serial
 
     async def adjust(self, name: str, *arguments: Any, lane: Lane = Lane.ORDERS) -> None:
-        """Give an order that acts at once, also while a program runs, whose end is then not the order's."""
+        """Give an order that acts at once, also while a program runs; nobody waits long for its end."""
         serial = await self.send(name, *arguments, lane=lane)
-        if self.values["interp_state"] == linuxcnc.INTERP_IDLE and self.values["inpos"]:
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(SETTLED):
-                    await self.finished(serial)
-        else:
-            await asyncio.sleep(LAST_WORDS)
-            self._complain(serial, linuxcnc.RCS_DONE)
-
-    def _complain(self, serial: int, result: int) -> None:
-        """CallError if an order has failed or task had something to say against it."""
-        texts = self._texts.pop(serial, [])
-        if result == linuxcnc.RCS_ERROR or texts:
-            said = "; ".join(texts)
-            raise CallError("machine", "{reason}" if said else "the machine refused it", reason=said, messages=texts)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(SETTLED):
+                await self.finished(serial)
 
     def only_ours(self, first: int, last: int) -> bool:
         """Whether every order from one serial number to another came from this server and none of them failed."""
         own = set(self._own)
-        return all(serial in own and serial not in self._texts for serial in range(first, last + 1))
+        unhappy = {serial for serial, end in self._ends.items() if end.texts or end.outcome not in HAPPY}
+        return all(serial in own and serial not in unhappy for serial in range(first, last + 1))
 
     def give_up(self) -> None:
         """An abort: whoever waits for the end of an order is told that there is none."""
-        for order in self._waiting:
-            if not order.future.done():
-                order.future.set_exception(CallError("aborted", "aborted"))
+        for waiting in self._waiting.values():
+            if not waiting.done():
+                waiting.set_exception(CallError("aborted", "aborted"))
         self._waiting.clear()
 
     async def mode(self, mode: int) -> None:

@@ -57,7 +57,10 @@ class Workers:
 
 
 async def start_worker(module: str, *arguments: str, nice: bool = False) -> Process:
-    """Start one of our modules with pipes, away from the terminal's Ctrl-C; ``nice``: nobody waits for it, it takes what others leave."""
+    """Start one of our modules with pipes, away from the terminal's Ctrl-C.
+
+    ``nice``: nobody waits for it, it takes what others leave.
+    """
     return await asyncio.create_subprocess_exec(
         *(["nice"] if nice else []), sys.executable, "-P", "-m", module, *arguments,
         stdin=PIPE if WAIT in arguments else DEVNULL, stdout=PIPE, stderr=PIPE, limit=LARGEST_LINE,

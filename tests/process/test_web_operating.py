@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import linuxcnc
-from tests.support.machine import wait_until
+from tests.support.machine import PATIENCE, wait_until
 from tests.support.webclient import Refused, WebClient, web_mill
 
 pytestmark = pytest.mark.process
@@ -95,6 +95,24 @@ def test_a_wrong_line_of_mdi_comes_back_with_the_machines_words(client):
     assert refused.value.code == "machine"
     assert "zero feed" in refused.value.frame["text"]
     client.wait(lambda _: client.messages and client.messages[-1]["kind"] == "error", "the message for everybody")
+
+
+def test_an_order_of_the_page_has_an_end_of_its_own_whatever_others_order_meanwhile(client):
+    client.ready()
+    watch, other = linuxcnc.stat(), linuxcnc.command()
+    moving = client.start("mdi.run", text="G1 F1200 X20")
+    wait_until(lambda: watch.poll() or watch.position[0] > 0.5, "under way")
+    other.feedrate(1.0)
+    assert other.result(PATIENCE)
+    moving.result(PATIENCE)
+    watch.poll()
+    assert watch.position[0] == pytest.approx(20.0)
+    moving = client.start("mdi.run", text="G1 F60 X-20")
+    wait_until(lambda: watch.poll() or watch.position[0] < 19.9, "under way")
+    other.abort()
+    with pytest.raises(Refused) as refused:
+        moving.result(PATIENCE)
+    assert refused.value.code == "aborted"
 
 
 def test_overrides_beyond_the_ini_files_limit_are_refused(client):

@@ -49,19 +49,7 @@ async def execute(caller: Caller, line: str) -> int:
         raise CallError("state", "switch the machine on first")
     await caller.server.jogging.stop()
     await machine.mode(linuxcnc.MODE_MDI)
-    serial = await machine.order("mdi", line)
-    await idle(caller)
-    return serial
-
-
-async def idle(caller: Caller) -> None:
-    """Wait until nothing executes any more; the end of an order is not seen when another came after it."""
-    await caller.server.machine.reach(
-        lambda values: (
-            values["interp_state"] == linuxcnc.INTERP_IDLE and values["inpos"] and not values["queued_mdi_commands"]
-        ),
-        timeout=600.0,
-    )
+    return await machine.order("mdi", line)
 
 
 def _line(text: str) -> str:
