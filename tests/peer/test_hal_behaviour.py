@@ -110,7 +110,68 @@ def typing(chance: random.Random) -> Rows:
             yield [0xC0 | held[-1]]
 
 
+Column = Callable[[random.Random, int], float]
+"""A value for the number of a period."""
+
+
+def motor(*columns: Column) -> Callable[[random.Random], Rows]:
+    """An amplitude, the pin `rev`, then columns by the period's number."""
+    return lambda chance: (
+        [chance.choice((1, 0.4, -0.7)) if i // 20 % 2 else 0.8, i // 50 % 2, *(column(chance, i) for column in columns)]
+        for i in range(SAMPLES)
+    )
+
+
+def bldc(kind: str, feedback: str, *columns: Column, given: str = "", out: str = "") -> Case:
+    """A motor that turns, with pins of its feedback and of its kind of output."""
+    outputs = f"f:phase-angle f:rotor-angle f:out b:out-dir f:out-abs {out or 'f:A-value f:B-value f:C-value'}"
+    prefixed = [" ".join(pin.replace(":", ":bldc.0.") for pin in pins.split())
+                for pins in (f"f:value b:rev {feedback}", outputs)]
+    settings = " ".join(f"bldc.0.{setting}" for setting in given.split())
+    return Case(f"bldc cfg={kind}", "bldc.0", *prefixed, motor(*columns), settings)
+
+
+def hall(number: int) -> Column:
+    """A sensor of a motor that turns a sixth in eleven periods, forwards and then backwards, by the usual pattern."""
+    places = (5, 4, 6, 2, 3, 1)
+    return lambda chance, i: places[(i if i < 250 else 500 - i) // 11 % 6] >> (3 - number) & 1
+
+
+def gray(bit: int) -> Column:
+    """A bit of a number that goes up."""
+    return lambda chance, i: i // 5 % 16 >> bit & 1
+
+
+def counts(speed: int) -> Column:
+    """An encoder that is turned faster and faster, forwards and backwards."""
+    return lambda chance, i: round(speed * 30 * math.sin(i * i / 20000.0))
+
+
+HALLS = "b:hall1 b:hall2 b:hall3"
 CASES = {
+    "bldc-h": bldc("h", HALLS, hall(1), hall(2), hall(3), out="f:A-value f:B-value f:C-value b:hall-error"),
+    "bldc-h-pattern": bldc("h", HALLS, hall(1), hall(2), hall(3), given="pattern=17",
+                           out="f:A-value f:B-value f:C-value b:hall-error"),
+    "bldc-hB": bldc("hB", HALLS, hall(1), hall(2), hall(3), out="b:A-on b:B-on b:C-on"),
+    "bldc-h6": bldc("h6", HALLS, hall(1), hall(2), hall(3), out="f:A-high f:A-low f:B-high f:B-low"),
+    "bldc-hB6": bldc("hB6", HALLS, hall(1), hall(2), hall(3), out="b:A-high-on b:A-low-on b:B-high-on b:C-low-on"),
+    "bldc-hH": bldc("hH", HALLS, hall(1), hall(2), hall(3), given="output-pattern=33",
+                    out="b:hall1-out b:hall2-out b:hall3-out"),
+    "bldc-hT": bldc("hT", HALLS, hall(1), hall(2), hall(3)),
+    "bldc-hF": bldc("hF", HALLS, hall(1), hall(2), hall(3), out="b:C1-out b:C2-out b:C4-out b:C8-out"),
+    "bldc-qh": bldc("qh", f"{HALLS} s:rawcounts", hall(1), hall(2), hall(3), lambda chance, i: 5 * min(i, 500 - i)),
+    "bldc-a": bldc("a", "s:rawcounts", counts(7), given="scale=1000 poles=6 encoder-offset=20 lead-angle=70"),
+    "bldc-aT": bldc("aT", "s:rawcounts", counts(5), given="lead-angle=70"),
+    "bldc-aB": bldc("aB", "s:rawcounts", counts(5), out="b:A-on b:B-on b:C-on"),
+    "bldc-aB6": bldc("aB6", "s:rawcounts", counts(5), out="b:A-high-on b:A-low-on b:B-high-on b:C-low-on"),
+    "bldc-a6": bldc("a6", "s:rawcounts", counts(5), out="f:A-high f:A-low f:B-high f:B-low"),
+    "bldc-aH": bldc("aH", "s:rawcounts", counts(5), out="b:hall1-out b:hall2-out b:hall3-out"),
+    "bldc-aF": bldc("aF", "s:rawcounts", counts(5), out="b:C1-out b:C2-out b:C4-out b:C8-out"),
+    "bldc-n": bldc("n", "f:frequency", lambda chance, i: 3 * i if i < 300 else -40),
+    "bldc-nT": bldc("nT", "f:frequency", lambda chance, i: 3.01 * i if i < 300 else -40),
+    "bldc-f": bldc("f", "b:C1 b:C2 b:C4 b:C8", gray(0), gray(1), gray(2), gray(3)),
+    "bldc-q": bldc("q", "s:rawcounts b:init", counts(5), lambda chance, i: i > 20,
+                   given="initvalue=0.5 drive-offset=30", out="f:A-value f:B-value f:C-value b:init-done"),
     "biquad-lowpass": Case(
         "biquad", "biquad.0", "f:biquad.0.in", "f:biquad.0.out b:biquad.0.valid", noise(1.0),
         "biquad.0.type=1 biquad.0.f0=50 biquad.0.Q=0.7071 biquad.0.enable=1",

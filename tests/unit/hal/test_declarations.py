@@ -48,12 +48,16 @@ def struct_of(declaration: Declaration) -> str | None:
 
 
 def plain(name: str) -> str:
-    """A pin's or a member's name without numbers, dashes and underscores, which C and HAL spell differently."""
-    return re.sub(r"bit\.\{\}\.|-\{type\}|\{.*?\}|[-_.0-9]", "", name).lower()
+    """A pin's or a member's name without numbers, dashes and underscores, which C and HAL spell differently.
+
+    Where the pin's begins with a word of its own, as `A-value`, the member's begins with each_.
+    """
+    return re.sub(r"^each_|bit\.\{\}\.|-\{type\}|\{.*?\}|[-_.0-9]", "", name).lower()
 
 
 SPECIAL = {
-    "mux_generic": "bb2,fs3", "matrix_kb": "2x3,4x8s", "charge_pump": "1", "thc": "1", "thcud": "1", "watchdog": "3",
+    "mux_generic": "bb2,fs3", "matrix_kb": "2x3,4x8s", "bldc": "qi6,aH", "charge_pump": "1", "thc": "1", "thcud": "1",
+    "watchdog": "3",
 }  # fmt: skip
 """What `loadrt` is given where two instances, or sizes of 2 and 1, are not possible."""
 LITERAL = sorted(name for name, declaration in DECLARED.items() if struct_of(declaration))
