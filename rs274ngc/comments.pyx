@@ -8,7 +8,7 @@ text. ``;py,STATEMENT`` is a line of its own. The Python ones need a plug-in: wi
 import re
 
 from rs274ngc.block cimport *
-from rs274ngc.params cimport get_named, named_exists
+from rs274ngc.params cimport get_named, get_numbered, named_exists
 from rs274ngc.state cimport PARAMETERS, State, fail
 
 DEBUG_PARAMETER = 5599      # 0: DEBUG is silent
@@ -29,6 +29,7 @@ def expand(State s, str text):
 
     def field(match):
         nonlocal decimals
+        cdef double numbered = 0.0
         name, number, style = match.groups()
         if style:
             decimals = "0" if style == "d" else "4" if style == "f" else style[1]
@@ -41,7 +42,8 @@ def expand(State s, str text):
         else:
             if not 0 < int(number) < PARAMETERS:
                 return "######"
-            value = s.params[<int>int(number)] if not 5420 <= int(number) <= 5428 else s.pos[<int>int(number) - 5420]
+            get_numbered(s, int(number), &numbered, -1)
+            value = numbered
         shown = f"{value if abs(value) >= SHOWN_MIN else 0.0:.{decimals}f}"
         return shown if len(shown) < DIGITS_MAX else "######"
 

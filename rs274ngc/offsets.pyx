@@ -5,18 +5,17 @@ takes the point to machine coordinates with the old offsets and back with the ne
 tool table are in machine units, in the state and in canon calls in program units.
 """
 
-from libc.math cimport M_PI, cos, fabs, floor, sin
+from libc.math cimport fabs, floor
 from libc.string cimport memcpy, memset
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_SIDE_OFF, CANON_UNITS_INCHES
 
 from rs274ngc.path cimport axis_words, machine_to_program
-from rs274ngc.state cimport WAIT_TOOL, State, fail, fail_word, remember_position
+from rs274ngc.state cimport WAIT_TOOL, State, fail, fail_word, program_to_machine, remember_position, rotate
 from rs274ngc.tools cimport find_tool, refresh_tool_parameters
 
 cdef int SIDE_OFF = CANON_SIDE_OFF, INCHES = CANON_UNITS_INCHES
-cdef double DEGREE = M_PI / 180.0
 cdef double WHOLE_TOLERANCE = 0.0001       # of P, above a whole number only, and Q
 
 cdef enum:
@@ -37,24 +36,10 @@ cdef double parameter_factor(State s, int axis) except? -1.0:
     return 1.0 / (s.canon.get_external_length_units() * (25.4 if s.units == INCHES else 1.0))
 
 
-cdef void rotate(double* x, double* y, double degrees) noexcept:
-    cdef double c, n, old
-    if degrees != 0.0:
-        c = cos(degrees * DEGREE)
-        n = sin(degrees * DEGREE)
-        old = x[0]
-        x[0] = old * c - y[0] * n
-        y[0] = old * n + y[0] * c
-
-
 cdef void to_machine(State s, double* point) noexcept:
-    cdef int k
+    """The position in machine coordinates, program units."""
     memcpy(point, s.pos, sizeof(s.pos))
-    for k in range(9):
-        point[k] += s.g92[k]
-    rotate(&point[0], &point[1], s.rotation)
-    for k in range(9):
-        point[k] += s.origin[k] + s.tool[k]
+    program_to_machine(s, point)
 
 
 cdef void to_program(State s, double* point) noexcept:
@@ -265,12 +250,12 @@ cdef int set_origin(State s, Block* b, int l) except -1:
         # The origin is where the present point, moved back by the wanted coordinates turned into the system, would be.
         for k in range(9):
             wanted[k] = point[k] - s.tool[k] - stored[k] * parameter_factor(s, k)
-        rotate(&wanted[0], &wanted[1], -rotation)
+        rotate(wanted, -rotation)
         for k in range(9):
             if has(b, axis_words[k]):
                 value = b.value[axis_words[k]]
                 wanted[k] = (value * 0.5 if k == 0 and s.diameter_mode else value) + s.g92[k]
-        rotate(&wanted[0], &wanted[1], rotation)
+        rotate(wanted, rotation)
         for k in range(9):
             stored[k] = (point[k] - s.tool[k] - wanted[k]) / parameter_factor(s, k)
     else:
@@ -297,10 +282,10 @@ cdef void turn_position(State s, const double* origin, double rotation) noexcept
     cdef double[9] point
     cdef int k
     memcpy(point, s.pos, sizeof(point))
-    rotate(&point[0], &point[1], rotation)
+    rotate(point, rotation)
     for k in range(9):
         point[k] += origin[k] - s.origin[k]
-    rotate(&point[0], &point[1], -s.rotation)
+    rotate(point, -s.rotation)
     memcpy(s.pos, point, sizeof(s.pos))
     s.comp_x, s.comp_y, s.comp_z = point[0], point[1], point[2]
 
@@ -354,13 +339,13 @@ cdef int shift_to_here(State s, Block* b, int l, const double* point, list offse
     for k in range(9):
         shift[k] = <double>offset[k] * parameter_factor(s, k)
         place[k] = point[k] - (fixture[k] * parameter_factor(s, k) if l == 11 else s.origin[k])
-    rotate(&shift[0], &shift[1], -rotation)
-    rotate(&place[0], &place[1], -rotation)
+    rotate(shift, -rotation)
+    rotate(place, -rotation)
     for k in range(9):
         if has(b, axis_words[k]):
             value = b.value[axis_words[k]]
             shift[k] = place[k] - (value * 0.5 if k == 0 and s.diameter_mode else value) - (s.g92[k] if l == 10 else 0.0)
-    rotate(&shift[0], &shift[1], rotation)
+    rotate(shift, rotation)
     for k in range(9):
         offset[k] = shift[k] / parameter_factor(s, k)
     return 0

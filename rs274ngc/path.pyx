@@ -9,7 +9,7 @@ from libc.string cimport memcpy
 
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_PLANE_XY, CANON_PLANE_XZ, CANON_PLANE_YZ, CANON_SIDE_OFF, CANON_UNITS_INCHES
-from rs274ngc.state cimport State, fail, fail_word
+from rs274ngc.state cimport State, fail, fail_word, program_to_machine, rotate
 
 cdef double DEGREE = M_PI / 180.0
 cdef double RADIUS_TOLERANCE_INCH = 0.00005, RADIUS_TOLERANCE_MM = 0.00127
@@ -31,15 +31,6 @@ for i in range(7):
 
 # --- Where a line ends
 
-cdef void rotate(double* xy, double degrees) noexcept:
-    cdef double c, n, x = xy[0]
-    if degrees != 0.0:
-        c = cos(degrees * DEGREE)
-        n = sin(degrees * DEGREE)
-        xy[0] = x * c - xy[1] * n
-        xy[1] = x * n + xy[1] * c
-
-
 cdef void machine_to_program(State s, double* point) noexcept:
     """A machine point in program coordinates, both in program units."""
     cdef int k
@@ -48,16 +39,6 @@ cdef void machine_to_program(State s, double* point) noexcept:
     rotate(point, -s.rotation)
     for k in range(9):
         point[k] -= s.g92[k]
-
-
-cdef void program_to_machine(State s, double* point) noexcept:
-    """A program point in machine coordinates, both in program units."""
-    cdef int k
-    for k in range(9):
-        point[k] += s.g92[k]
-    rotate(point, s.rotation)
-    for k in range(9):
-        point[k] += s.origin[k] + s.tool[k]
 
 
 cdef int find_end(State s, Block* b, double* end) except -1:

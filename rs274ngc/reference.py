@@ -70,6 +70,7 @@ def reference() -> str:
         "| name | value |",
         "|---|---|",
         *(f"| `#<{name}>` | {meaning} |" for name, meaning, _ in ROWS),
+        "| `#5021` to `#5029` | X to W of the position without offsets |",
         "| `#<_ini[SECTION]KEY>` | number of the INI file |",
         "| `#<_hal[pin]>` | value of a HAL pin, signal or parameter |",
     ]

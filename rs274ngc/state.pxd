@@ -144,3 +144,5 @@ cdef int fail(State s, str message, int at=*) except -1
 cdef int fail_word(State s, str message, int word) except -1
 cdef void remember_position(State s) noexcept
 cdef double unit_factor(State s) noexcept
+cdef void rotate(double* xy, double degrees) noexcept
+cdef void program_to_machine(State s, double* point) noexcept

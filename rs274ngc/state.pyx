@@ -4,12 +4,14 @@ Only data and the few functions that keep it consistent; what a code does with i
 program units, angles in degrees, speeds in turns a minute.
 """
 
-from libc.string cimport memset
+from libc.math cimport M_PI, cos, sin
+from libc.string cimport memcpy, memset
 
 from nml.errors import InterpError
 from rs274ngc.block cimport *
 from rs274ngc.canon import CANON_CONTINUOUS, CANON_PLANE_XY, CANON_SIDE_OFF, CANON_STOPPED, CANON_UNITS_INCHES, CANON_UNITS_MM
 
+cdef double DEGREE = M_PI / 180.0
 cdef int INCHES = CANON_UNITS_INCHES
 
 
@@ -87,7 +89,10 @@ cdef class State:
     @property
     def machine_position(self):
         """Where the tool is without any offset: X to W, program units."""
-        return tuple([self.pos[i] + self.origin[i] + self.g92[i] + self.tool[i] for i in range(9)])
+        cdef double[9] point
+        memcpy(point, self.pos, sizeof(point))
+        program_to_machine(self, point)
+        return tuple([point[i] for i in range(9)])
 
     def set_indexer(self, int rotary, int joint):
         """Rotary axis 0 A, 1 B or 2 C is an indexer that ``joint`` locks."""
@@ -137,3 +142,23 @@ cdef void remember_position(State s) noexcept:
 cdef double unit_factor(State s) noexcept:
     """Millimetres in a program unit."""
     return 25.4 if s.units == INCHES else 1.0
+
+
+cdef void rotate(double* xy, double degrees) noexcept:
+    """Turn a point about Z."""
+    cdef double c, n, x = xy[0]
+    if degrees != 0.0:
+        c = cos(degrees * DEGREE)
+        n = sin(degrees * DEGREE)
+        xy[0] = x * c - xy[1] * n
+        xy[1] = x * n + xy[1] * c
+
+
+cdef void program_to_machine(State s, double* point) noexcept:
+    """A program point in machine coordinates, both in program units."""
+    cdef int k
+    for k in range(9):
+        point[k] += s.g92[k]
+    rotate(point, s.rotation)
+    for k in range(9):
+        point[k] += s.origin[k] + s.tool[k]

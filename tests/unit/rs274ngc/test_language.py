@@ -50,6 +50,22 @@ def test_offsets_move_the_coordinates_and_not_the_tool(run):
     assert [move[1] for move in canon.named("straight_traverse")] == [10.0, 0.0, -5.0]
 
 
+@pytest.mark.parametrize("units", ["g20", "g21"])
+@pytest.mark.parametrize(
+    "offsets", ["g92.1", "g10 l2 p1 x3 y7 r45", "g10 l2 p1 x0 y0 r30\ng92 x3 y7", "g10 l2 p1 x3 y7 r-60\ng43.1 x2 z5"]
+)
+def test_the_position_without_offsets_has_a_name_and_a_number(run, units, offsets):
+    program = f"{units}\n{offsets}\ng53 g0 x1 y2 z3 a4\n(debug,#5021 #5022 #5023 #5024)\n"
+    canon = run(f"{program}#<found> = #5022\n(debug,#<_abs_x> #<_abs_y> #<_abs_z> #<_abs_a> #<found>)\nm2\n")
+    numbers, names = ([round(float(word), 3) for word in text.split()] for (text,) in canon.named("message"))
+    assert (numbers, names) == ([1, 2, 3, 4], [1, 2, 3, 4, 2])
+
+
+def test_the_position_without_offsets_cannot_be_set(run):
+    with pytest.raises(InterpError, match="readonly"):
+        run("#5021 = 1\nm2\n")
+
+
 def test_loops_conditions_and_calls_flow(run):
     canon = run(
         "o1 sub\no2 if [#1 gt 1]\ng0 x#1\no2 else\ng0 y#1\no2 endif\no1 return [#1 * 2]\no1 endsub\n"
