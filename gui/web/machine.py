@@ -171,11 +171,11 @@ class Machine:
     def _take(self, values: dict[str, Any], told: list[Message]) -> None:
         """In the event loop: a status has come, and what task told of orders before it was read."""
         self.values |= values
+        for message in told:
+            self._note(message)
         self._on_status(values)
         self._changed.set()
         self._changed.clear()
-        for message in told:
-            self._note(message)
         if not self._waiting and not self._closely:
             self._hurry.clear()
 
@@ -235,8 +235,18 @@ class Machine:
         """Give an order and wait for its end; CallError with the machine's words where it fails."""
         return await self.finished(await self.send(name, *arguments, lane=lane))
 
+    async def begin(self, name: str, *arguments: Any) -> None:
+        """Give an order that starts the program; CallError with the machine's words where it is refused."""
+        serial = await self.send(name, *arguments)
+        end = self._end_of(serial)
+        await self.reach(
+            lambda values: end.outcome is not None or values["interp_state"] != linuxcnc.INTERP_IDLE, PATIENCE
+        )
+        if end.outcome is not None:
+            _judge(end)
+
     async def finished(self, serial: int) -> int:
-        """Wait for the end of an order that was given."""
+        """Wait for the end of an order that was given; CallError with the machine's words where it fails."""
         end = self._end_of(serial)
         if end.outcome is None:
             waiting = self._waiting[serial] = self._loop.create_future()
@@ -248,12 +258,7 @@ class Machine:
                 raise CallError("machine", "the machine has not finished it yet", messages=[]) from None
             finally:
                 self._waiting.pop(serial, None)
-        if end.outcome is ORDER_OUTCOME.ABORTED:
-            raise CallError("aborted", "aborted")
-        if end.outcome is not ORDER_OUTCOME.DONE:
-            said = "; ".join(end.texts)
-            text = "{reason}" if said else "the machine refused it"
-            raise CallError("machine", text, reason=said, messages=end.texts)
+        _judge(end)
         return serial
 
     async def adjust(self, name: str, *arguments: Any, lane: Lane = Lane.ORDERS) -> None:
@@ -281,3 +286,13 @@ class Machine:
         if self.values.get("task_mode") != mode:
             await self.order("mode", mode)
             await self.reach(lambda values: values["task_mode"] == mode)
+
+
+def _judge(end: End) -> None:
+    """CallError for an order that was not done."""
+    if end.outcome is ORDER_OUTCOME.ABORTED:
+        raise CallError("aborted", "aborted")
+    if end.outcome is not ORDER_OUTCOME.DONE:
+        said = "; ".join(end.texts)
+        text = "{reason}" if said else "the machine refused it"
+        raise CallError("machine", text, reason=said, messages=end.texts)

@@ -44,12 +44,21 @@ def note(label):
         "held": [s.tool_in_spindle, s.pocket_prepped, s.tool_from_pocket], "state": [s.state, s.interp_state],
         "requests": [bool(h["tool-prepare"]), bool(h["tool-change"])], "place": list(s.position[:3])}])
 
-def until(name, value, seconds):
-    end = time.time() + seconds
-    while time.time() < end:
-        if bool(h[name]) == value:
-            return True
+def until(name, value):
+    end = time.time() + 30
+    while time.time() < end and bool(h[name]) != value:
         time.sleep(0.005)
+
+def requested(name):
+    "Whether the changer is asked for this before the line is over, which it is when it stays so."
+    end, idle = time.time() + 30, 0
+    while time.time() < end and idle < 10:
+        if h[name]:
+            return True
+        time.sleep(0.02)
+        s.poll()
+        over = s.echo_serial_number == c.serial and s.state != linuxcnc.RCS_EXEC
+        idle = idle + 1 if over and s.interp_state == linuxcnc.INTERP_IDLE else 0
     return False
 
 def mdi(line, seconds=20):
@@ -60,10 +69,10 @@ def mdi(line, seconds=20):
 def tool(line, asked=("prepare", "change")):
     c.mdi(line)
     for request in asked:
-        if until("tool-" + request, True, 3):
+        if requested("tool-" + request):
             note(line + ": " + request)
             h["tool-" + request + "d"] = True
-            until("tool-" + request, False, 5)
+            until("tool-" + request, False)
             h["tool-" + request + "d"] = False
     c.wait_complete(20)
     note(line)
@@ -72,11 +81,11 @@ def tool(line, asked=("prepare", "change")):
 def abort_in(line, *answers):
     c.mdi(line)
     for request in answers:
-        until("tool-" + request, True, 5)
+        until("tool-" + request, True)
         h["tool-" + request + "d"] = True
-        until("tool-" + request, False, 5)
+        until("tool-" + request, False)
         h["tool-" + request + "d"] = False
-    until("tool-change" if answers else "tool-prepare", True, 5)
+    until("tool-change" if answers else "tool-prepare", True)
     c.abort()
     c.wait_complete(20)
     note(line + " aborted")

@@ -34,7 +34,7 @@ def test_applications_start_with_their_arguments_in_the_folder_of_the_ini_file(t
     run = started(tmp_path, "[APPLICATIONS]\nAPP = ./app one 'two words'\nDELAY = 0.1")
     assert run.finish() == 0, run.errors
     assert (tmp_path / "told").read_text() == f"{tmp_path} one two words\n"
-    assert traces() == []
+    wait_until(lambda: traces() == [], "the end of everything")  # the programs of an application are its own
 
 
 def test_the_machine_runs_without_an_application_that_is_missing_or_fails(tmp_path):

@@ -71,6 +71,18 @@ def test_a_program_is_uploaded_opened_run_paused_and_aborted(client):
     client.wait(lambda state: state["interp_state"] == linuxcnc.INTERP_IDLE and state["inpos"], "aborted")
 
 
+def test_a_program_that_cannot_start_is_refused_in_the_machines_words(client):
+    client.take()
+    client.call("machine.estop_reset")
+    client.call("machine.power", on=True)
+    client.call("program.open", path="square.ngc")
+    client.wait(lambda state: state["program"], "loaded")
+    assert not client.state["all_homed"]
+    with pytest.raises(Refused, match="homed") as refused:
+        client.call("program.run")
+    assert refused.value.code == "machine"
+
+
 def test_steps_execute_a_line_each(client):
     client.ready()
     client.call("program.open", path="square.ngc")

@@ -69,7 +69,7 @@ async def run(caller: Caller, line: int = 1, token: str | None = None) -> None:
         await programs.redeem(line, token)
     await caller.server.jogging.stop()
     await machine.mode(linuxcnc.MODE_AUTO)
-    await machine.send("auto", linuxcnc.AUTO_RUN, line if line > 1 else 0)
+    await machine.begin("auto", linuxcnc.AUTO_RUN, line if line > 1 else 0)
 
 
 @method("program.run_from_check", Right.ANYBODY)
@@ -89,7 +89,7 @@ async def step(caller: Caller) -> None:
     if machine.values["task_mode"] != linuxcnc.MODE_AUTO:
         _idle(caller)
         await machine.mode(linuxcnc.MODE_AUTO)
-    await machine.send("auto", linuxcnc.AUTO_STEP)
+    await machine.begin("auto", linuxcnc.AUTO_STEP)
 
 
 @method("program.pause", Right.OPERATOR)
@@ -99,17 +99,17 @@ async def pause(caller: Caller) -> None:
 
 @method("program.resume", Right.CONTROLS)
 async def resume(caller: Caller) -> None:
-    await caller.server.machine.send("auto", linuxcnc.AUTO_RESUME)
+    await caller.server.machine.adjust("auto", linuxcnc.AUTO_RESUME)
 
 
 @method("program.reverse", Right.CONTROLS)
 async def reverse(caller: Caller) -> None:
-    await caller.server.machine.send("auto", linuxcnc.AUTO_REVERSE)
+    await caller.server.machine.adjust("auto", linuxcnc.AUTO_REVERSE)
 
 
 @method("program.forward", Right.CONTROLS)
 async def forward(caller: Caller) -> None:
-    await caller.server.machine.send("auto", linuxcnc.AUTO_FORWARD)
+    await caller.server.machine.adjust("auto", linuxcnc.AUTO_FORWARD)
 
 
 @method("program.optional_stop", Right.CONTROLS)
