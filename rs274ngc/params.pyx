@@ -9,7 +9,7 @@ from nml.errors import InterpError
 from rs274ngc.predefined import PREDEFINED
 from rs274ngc.state cimport FEATURE_HAL_PIN_VARS, FEATURE_INI_VARS, PARAMETERS, State, fail
 
-READ_ONLY = frozenset((*range(5021, 5030), *range(5400, 5414), *range(5420, 5429)))
+READ_ONLY = frozenset((*range(5021, 5030), *range(5081, 5090), *range(5400, 5414), *range(5420, 5429)))
 """Numbered parameters that a program cannot set."""
 
 
@@ -20,6 +20,8 @@ cdef int get_numbered(State s, int number, double* out, int at) except -1:
         out[0] = s.pos[number - 5420]
     elif 5021 <= number <= 5029:
         out[0] = s.machine_position[number - 5021]
+    elif 5081 <= number <= 5089:
+        out[0] = s.tool[number - 5081]
     else:
         out[0] = s.params[number]
     return 0

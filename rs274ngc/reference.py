@@ -71,6 +71,7 @@ def reference() -> str:
         "|---|---|",
         *(f"| `#<{name}>` | {meaning} |" for name, meaning, _ in ROWS),
         "| `#5021` to `#5029` | X to W of the position without offsets |",
+        "| `#5081` to `#5089` | X to W of the tool offset in force; `#5401` to `#5409` are the loaded tool's |",
         "| `#<_ini[SECTION]KEY>` | number of the INI file |",
         "| `#<_hal[pin]>` | value of a HAL pin, signal or parameter |",
     ]

@@ -61,9 +61,15 @@ def test_the_position_without_offsets_has_a_name_and_a_number(run, units, offset
     assert (numbers, names) == ([1, 2, 3, 4], [1, 2, 3, 4, 2])
 
 
-def test_the_position_without_offsets_cannot_be_set(run):
+def test_the_tool_offset_in_force_has_numbers_of_its_own(run):
+    canon = run("g43.1 x1 z5\n(debug,#5081 #5083)\ng43.2 z2\n(debug,#5081 #5083)\ng49\n(debug,#5081 #5083)\nm2\n")
+    assert [[float(word) for word in text.split()] for (text,) in canon.named("message")] == [[1, 5], [1, 7], [0, 0]]
+
+
+@pytest.mark.parametrize("number", [5021, 5029, 5081, 5089])
+def test_what_follows_from_position_and_offsets_cannot_be_set(run, number):
     with pytest.raises(InterpError, match="readonly"):
-        run("#5021 = 1\nm2\n")
+        run(f"#{number} = 1\nm2\n")
 
 
 def test_loops_conditions_and_calls_flow(run):
