@@ -147,6 +147,17 @@ def counts(speed: int) -> Column:
     return lambda chance, i: round(speed * 30 * math.sin(i * i / 20000.0))
 
 
+def thermocouples(chance: random.Random) -> Rows:
+    """The bits of two converters, in time with their clock: temperatures, and now and then a fault."""
+    words = [0, 0]
+    for i in range(SAMPLES):
+        if i % 130 == 4:
+            words = [(chance.randint(-700, 5200) << 18 & 0xFFFC0000) | chance.randint(0, 800) << 4 for _ in range(2)]
+            words[1] |= chance.choice((0, 1, 2, 4))
+        bit = 31 - i % 130 // 2 + 2
+        yield [word >> bit & 1 if 0 <= bit < 32 else 0 for word in words]
+
+
 HALLS = "b:hall1 b:hall2 b:hall3"
 CASES = {
     "bldc-h": bldc("h", HALLS, hall(1), hall(2), hall(3), out="f:A-value f:B-value f:C-value b:hall-error"),
@@ -172,6 +183,13 @@ CASES = {
     "bldc-f": bldc("f", "b:C1 b:C2 b:C4 b:C8", gray(0), gray(1), gray(2), gray(3)),
     "bldc-q": bldc("q", "s:rawcounts b:init", counts(5), lambda chance, i: i > 20,
                    given="initvalue=0.5 drive-offset=30", out="f:A-value f:B-value f:C-value b:init-done"),
+    "max31855": Case(
+        "max31855 personality=2", "max31855.0.bitbang-spi", "b:max31855.0.data.0.in b:max31855.0.data.1.in",
+        "b:max31855.0.cs.out b:max31855.0.clk.out " + " ".join(
+            f"f:max31855.0.temp-celsius.{i} f:max31855.0.temp-kelvin.{i} f:max31855.0.temp-fahrenheit.{i} "
+            f"b:max31855.0.fault.{i} u:max31855.0.fault-flags.{i}" for i in range(2)
+        ), thermocouples, tolerance=0.02,
+    ),
     "biquad-lowpass": Case(
         "biquad", "biquad.0", "f:biquad.0.in", "f:biquad.0.out b:biquad.0.valid", noise(1.0),
         "biquad.0.type=1 biquad.0.f0=50 biquad.0.Q=0.7071 biquad.0.enable=1",

@@ -1,4 +1,4 @@
-"""Components for things at plain pins: a pad of keys."""
+"""Components for things at plain pins: a pad of keys, converters of thermocouples."""
 
 from __future__ import annotations
 
@@ -57,3 +57,36 @@ def test_a_scanned_pad_drives_its_rows_in_turn_and_wants_two_scans_that_agree(co
 def test_a_pad_of_no_size_is_refused(host: Host, words: list[str]) -> None:
     with pytest.raises(HalError, match="would be right"):
         host.load("matrix_kb", words)
+
+
+def send(bench: Bench, celsius: float, cold_end: float, flags: int = 0) -> float:
+    """One reading: the bits of a converter, in time with its selection; the temperature afterwards."""
+    word = (round(celsius * 4) << 18 & 0xFFFC0000) | (round(cold_end * 16) << 4 & 0xFFF0) | flags
+    while not bench.get("cs.out"):
+        bench.run("max31855.0.bitbang-spi")
+    while bench.get("cs.out"):
+        bench.run("max31855.0.bitbang-spi")
+    bench.run("max31855.0.bitbang-spi")
+    for call in range(64):
+        bench.set(**{"data.0.in": bool(word >> 31 - call // 2 & 1)})
+        bench.run("max31855.0.bitbang-spi")
+    return bench.get("temp-celsius.0")
+
+
+def test_a_thermocouple_s_reading_is_made_linear_but_beyond_the_tables(component: Load) -> None:
+    chip = component("max31855", "personality=1")
+    assert send(chip, 25.0, 25.0) == pytest.approx(24.99, abs=0.01)
+    assert chip.get("temp-kelvin.0") == pytest.approx(298.14, abs=0.01)
+    assert chip.get("temp-fahrenheit.0") == pytest.approx(76.98, abs=0.02)
+    assert send(chip, 100.0, 0.0) == pytest.approx(100.73, abs=0.01)
+    assert send(chip, -50.0, 20.0) == pytest.approx(-55.68, abs=0.01)
+    assert send(chip, -220.0, 10.0) == -220.0
+    assert send(chip, 1500.0, 20.0) == 1500.0
+
+
+def test_a_broken_thermocouple_leaves_the_temperature_as_it_was(component: Load) -> None:
+    chip = component("max31855", "personality=1")
+    before = send(chip, 100.0, 20.0)
+    assert (send(chip, 900.0, 20.0, flags=4), chip.get("fault.0"), chip.get("fault-flags.0")) == (before, 1, 4)
+    assert send(chip, 200.0, 20.0) > before
+    assert not chip.get("fault.0")
