@@ -88,11 +88,13 @@ def _module_from_file(path: Path) -> ModuleType:
     spec = spec_from_file_location(name_of(path.name), path)
     if not path.is_file() or spec is None or spec.loader is None:
         raise HalError(f"there is no component file '{path}'", -2)
-    module = module_from_spec(spec)
     try:
+        module = module_from_spec(spec)
         spec.loader.exec_module(module)
     except SyntaxError as error:
         raise HalError(f"{path}:{error.lineno}: SyntaxError: {error.msg}") from None
+    except ImportError as error:
+        raise HalError(f"{path} cannot be loaded: {error}") from None
     if not hasattr(module, "load"):
         raise HalError(f"{path}: there is no function load(host, args) in it")
     return module

@@ -43,7 +43,10 @@ def main() -> int:
             ACTIONS[options.action](Path(file), options)
     except subprocess.CalledProcessError as error:
         return error.returncode or 1
-    except (PyemcError, OSError) as error:
+    except OSError as error:
+        print(f"halcompile: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 1
+    except PyemcError as error:
         print(error if isinstance(error, language.CompError) else f"halcompile: {error}", file=sys.stderr)
         return 1
     return 0

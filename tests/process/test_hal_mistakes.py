@@ -62,12 +62,16 @@ MISTAKES = {
     "loadrt ./nothing.py": "nothing.py: there is no function load(host, args)",
     "loadrt ./fails.py": "fails.py:2: ZeroDivisionError: division by zero",
     "loadrt ./unfinished.py": "unfinished.py:1: SyntaxError",
+    "loadrt ./lacks.py": "lacks.py cannot be loaded: No module named 'no_such_module'",
+    "loadrt ./junk.so": "junk.so cannot be loaded: ",
 }
 FILES = {
     "itself.hal": "source itself.hal\n",
     "not-executable": "",
     "nothing.py": "answer = 42\n",
     "fails.py": "def load(host, args):\n    1 / 0\n",
+    "lacks.py": "import no_such_module\n",
+    "junk.so": "junk",
     "unfinished.py": "def load(host, args)\n    pass\n",
 }
 

@@ -252,6 +252,8 @@ def test_preprocessing_and_documents_go_beside_the_file(tmp_path: Path) -> None:
 
 
 def test_what_is_wrong_is_said_and_nothing_is_left(tmp_path: Path) -> None:
+    done = halcompile(tmp_path, "gone.comp")
+    assert (done.returncode, done.stderr) == (1, "halcompile: gone.comp: No such file or directory\n")
     (tmp_path / "other.comp").write_text(SHIFT)
     done = halcompile(tmp_path, "other.comp")
     assert (done.returncode, done.stderr) == (
