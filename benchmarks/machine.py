@@ -1,80 +1,26 @@
-"""A three-axis simulated mill and the programs that the benchmarks run on it, written into a folder.
+"""The programs of the benchmarks, and the simulated mill that they run on, written into a folder.
 
-The folder is a plain LinuxCNC configuration (INI, HAL, tool table): the same files are run by both controllers.
+The folder is a plain LinuxCNC configuration (``tests.support.plain_mill``): the same files are run by both controllers.
 """
 
 from __future__ import annotations
 
 import math
+import sys
 from pathlib import Path
 
-INI = """\
-[EMC]
-MACHINE = bench
-VERSION = 1.1
-DEBUG = 0
-[DISPLAY]
-DISPLAY = {display}
-PROGRAM_PREFIX = .
-MAX_FEED_OVERRIDE = 1.2
-CYCLE_TIME = 0.1
-[TASK]
-TASK = milltask
-CYCLE_TIME = 0.001
-[RS274NGC]
-PARAMETER_FILE = bench.var
-[EMCMOT]
-EMCMOT = motmod
-COMM_TIMEOUT = 1.0
-SERVO_PERIOD = 1000000
-[EMCIO]
-EMCIO = io
-CYCLE_TIME = 0.1
-TOOL_TABLE = bench.tbl
-[HAL]
-HALFILE = bench.hal
-[TRAJ]
-COORDINATES = X Y Z
-LINEAR_UNITS = mm
-ANGULAR_UNITS = degree
-DEFAULT_LINEAR_VELOCITY = 100
-MAX_LINEAR_VELOCITY = 100
-DEFAULT_LINEAR_ACCELERATION = 500
-MAX_LINEAR_ACCELERATION = 500
-[KINS]
-KINEMATICS = trivkins
-JOINTS = 3
-"""
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-AXIS = """\
-[AXIS_{letter}]
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 500
-MIN_LIMIT = -1000
-MAX_LIMIT = 1000
-[JOINT_{joint}]
-TYPE = LINEAR
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 500
-MIN_LIMIT = -1000
-MAX_LIMIT = 1000
-FERROR = 1
-MIN_FERROR = 0.5
-HOME_SEQUENCE = 0
-"""
+from tests.support import plain_mill
 
-HAL = """\
-loadrt [KINS]KINEMATICS
-loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-net Xpos joint.0.motor-pos-cmd => joint.0.motor-pos-fb
-net Ypos joint.1.motor-pos-cmd => joint.1.motor-pos-fb
-net Zpos joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-net estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net tool-prep-loop iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
-"""
+CHANGES = {
+    "NML_FILE = {folder}/server.nml\n": "",
+    "LINEAR_VELOCITY = 30": "LINEAR_VELOCITY = 100",
+    "VELOCITY = 50": "VELOCITY = 100",
+    "LIMIT = -200": "LIMIT = -1000",
+    "LIMIT = 200": "LIMIT = 1000",
+}
+"""What the mill of the comparisons has otherwise: here the built-in NML file, and more speed and room."""
 
 
 def short_circle() -> str:
@@ -120,9 +66,5 @@ def write(folder: Path, display: str) -> Path:
     """Write configuration and programs into ``folder``; the INI file's path."""
     for name, make in PROGRAMS.items():
         (folder / name).write_text(make())
-    (folder / "bench.tbl").write_text("T1 P1 D1 Z0\n")
-    (folder / "bench.hal").write_text(HAL)
-    ini = folder / "bench.ini"
-    axes = "".join(AXIS.format(letter=letter, joint=joint) for joint, letter in enumerate("XYZ"))
-    ini.write_text(INI.format(display=display) + axes)
-    return ini
+    changes = {old.format(folder=folder): new for old, new in CHANGES.items()}
+    return plain_mill.write(folder, display, changes)

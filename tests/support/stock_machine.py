@@ -20,79 +20,12 @@ from typing import Any
 import pytest
 
 from nml import namespace
-from tests.support import shield
+from tests.support import plain_mill, shield
 from tests.support.nml_server import SOURCE, remote_text
 
 USER = next((name for name in ("lcnc", "nobody") if name in {entry.pw_name for entry in pwd.getpwall()}), None)
 PORT = 5005
 
-INI = """\
-[EMC]
-VERSION = 1.1
-MACHINE = stock
-DEBUG = 0
-NML_FILE = {folder}/server.nml
-[DISPLAY]
-DISPLAY = {folder}/display
-[TASK]
-TASK = milltask
-CYCLE_TIME = 0.001
-[RS274NGC]
-PARAMETER_FILE = {folder}/stock.var
-[EMCMOT]
-EMCMOT = motmod
-COMM_TIMEOUT = 1.0
-SERVO_PERIOD = 1000000
-[EMCIO]
-EMCIO = io
-CYCLE_TIME = 0.1
-TOOL_TABLE = {folder}/stock.tbl
-[HAL]
-HALFILE = {folder}/stock.hal
-[TRAJ]
-COORDINATES = X Y Z
-LINEAR_UNITS = mm
-ANGULAR_UNITS = degree
-DEFAULT_LINEAR_VELOCITY = 30
-MAX_LINEAR_VELOCITY = 50
-DEFAULT_LINEAR_ACCELERATION = 500
-MAX_LINEAR_ACCELERATION = 500
-[KINS]
-KINEMATICS = trivkins
-JOINTS = 3
-"""
-AXIS = """\
-[AXIS_{letter}]
-MAX_VELOCITY = 50
-MAX_ACCELERATION = 500
-MIN_LIMIT = -200
-MAX_LIMIT = 200
-[JOINT_{number}]
-TYPE = LINEAR
-HOME = 0
-MAX_VELOCITY = 50
-MAX_ACCELERATION = 500
-MIN_LIMIT = -200
-MAX_LIMIT = 200
-FERROR = 1
-MIN_FERROR = 0.5
-HOME_OFFSET = 0
-HOME_SEARCH_VEL = 0
-HOME_LATCH_VEL = 0
-HOME_SEQUENCE = {number}
-"""
-HAL = """\
-loadrt [KINS]KINEMATICS
-loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
-net y joint.1.motor-pos-cmd => joint.1.motor-pos-fb
-net z joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net change iocontrol.0.tool-change => iocontrol.0.tool-changed
-"""
 ENTER = """\
 mkdir "$1/source" && mount --bind "$4" "$1/source" || exit 77
 ip link set lo up && mount -t tmpfs tmpfs /tmp || exit 77
@@ -209,18 +142,7 @@ def _prepare(
 
 def _write(folder: Path, display: str, changes: dict[str, str]) -> None:
     """The machine's own files, but for the NML file."""
-    axes = "".join(AXIS.format(letter=letter, number=number) for number, letter in enumerate("XYZ"))
-    ini = INI.format(folder=folder) + axes
-    for old, new in changes.items():
-        assert old in ini, old
-        ini = ini.replace(old, new)
-    files = {
-        "machine.ini": ini,
-        "stock.hal": HAL,
-        "stock.tbl": "T1 P1 Z1.5 D3\n",
-        "stock.var": "",
-        "display": display,
-    }
-    for name, text in files.items():
-        (folder / name).write_text(text)
-    (folder / "display").chmod(0o755)
+    program = folder / "display"
+    program.write_text(display)
+    program.chmod(0o755)
+    plain_mill.write(folder, str(program), changes)
