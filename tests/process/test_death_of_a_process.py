@@ -92,7 +92,8 @@ def test_when_the_realtime_host_dies_the_program_ends_with_an_error(tmp_path):
     with running(ini, "--run", str(part), speed=SPEED) as run:
         wait_until(lambda: run.process.poll() is not None or "host" in run.pids(), "the host")
         status = linuxcnc.stat()
-        wait_until(lambda: status.poll() or status.current_vel > 50.0, "cutting")
+        wait_until(lambda: run.process.poll() is not None or status.poll() or status.current_vel > 50.0, "cutting")
+        assert run.process.poll() is None, run.errors
         os.kill(run.pids()["host"], signal.SIGKILL)
         assert run.finish() == 1
     assert "realtime host" in run.errors
