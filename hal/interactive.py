@@ -11,7 +11,7 @@ from hal import commands
 from hal._shm import PARAM, PIN, USER
 from hal.show import Save
 from hal.values import TYPES
-from nml.errors import Place
+from nml.errors import HalError, Place
 
 if TYPE_CHECKING:
     from hal.session import Session
@@ -115,5 +115,9 @@ def run(session: Session) -> bool:
             continue
         number += 1
         session.place = Place("<stdin>", number)
-        session.run_line(line)
+        try:
+            session.run_line(line)
+        except KeyboardInterrupt:
+            print()
+            session.report(HalError("interrupted"))
         sys.stdout.flush()
