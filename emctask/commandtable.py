@@ -29,6 +29,10 @@ AUTO = frozenset({Mode.AUTO})
 ANY = frozenset(Mode)
 NEVER: frozenset[Mode] = frozenset()
 
+RUNNING = frozenset({Interp.READING, Interp.WAITING})
+UNDER_WAY = RUNNING | {Interp.PAUSED}
+"""States of the interpreter in which a program goes on, or is not over."""
+
 MODE_NAMES = {Mode.MANUAL: "manual", Mode.MDI: "MDI", Mode.AUTO: "auto"}
 
 
@@ -50,6 +54,11 @@ def passed_over(mode: Mode) -> type[Refused]:
     return PassedOver
 
 
+def error_in_auto(mode: Mode) -> type[Refused]:
+    """Refused as an error in auto mode, passed over in others."""
+    return Refused if mode is Mode.AUTO else PassedOver
+
+
 @dataclass(frozen=True, slots=True)
 class Rule:
     """What a command needs. ``urgent(message)``: it overtakes everything and ends what is being waited for."""
@@ -61,6 +70,8 @@ class Rule:
     urgent: Callable[[Any], bool]
     refusal: Callable[[Mode], type[Refused]] = error
     """How it is refused for the mode."""
+    unless: frozenset[Interp] = frozenset()
+    """States of the interpreter in which it is refused in auto mode: it is the program's to give."""
 
 
 RULES: dict[int, Rule] = {}
@@ -84,15 +95,16 @@ def command(
     idle: bool = False,
     urgent: Callable[[Any], bool] = never,
     refusal: Callable[[Mode], type[Refused]] = error,
+    unless: frozenset[Interp] = frozenset(),
 ) -> Callable[[Handler], Handler]:
     """Register a handler. ``on``: only while the machine is on; ``idle``: only while no program or MDI line runs.
 
-    ``refusal``: how it is refused in a mode that it is not for.
+    ``refusal``: how it is refused in a mode that it is not for. ``unless``: states of a program in which it is refused.
     """
 
     def register(handler: Handler) -> Handler:
         for message in types:
-            RULES[message.TYPE_ID] = Rule(handler, on, modes, idle, urgent, refusal)
+            RULES[message.TYPE_ID] = Rule(handler, on, modes, idle, urgent, refusal, unless)
         return handler
 
     return register
@@ -109,7 +121,8 @@ def check(rule: Rule, message: Message, state: State, mode: Mode, interp: Interp
     name = type(message).__name__
     if rule.on and state is not State.ON:
         raise Refused(f"command ({name}) cannot be executed until the machine is out of E-stop and turned on")
-    if mode in rule.modes and (interp is Interp.IDLE or not rule.idle):
+    busy = (rule.idle and interp is not Interp.IDLE) or (mode is Mode.AUTO and interp in rule.unless)
+    if mode in rule.modes and not busy:
         return
     if mode is Mode.AUTO:
         raise rule.refusal(mode)(f"can't do that ({name}) in auto mode with the interpreter {interp.name.lower()}")

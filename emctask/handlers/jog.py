@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import MANUAL, PassedOver, command, passed_over
+from emctask.commandtable import MANUAL, PassedOver, command, error_in_auto
 from nml.emc import EMC_JOG_ABS, EMC_JOG_CONT, EMC_JOG_INCR, EMC_JOG_STOP
 from nml.emc.emcmot import MotCommand
 
@@ -28,19 +28,19 @@ def _target(task: Task, message: Jog) -> dict[str, int]:
     return {"joint": -1, "axis": number, "mode": 0}
 
 
-@command(EMC_JOG_CONT, on=True, modes=MANUAL, refusal=passed_over)
+@command(EMC_JOG_CONT, on=True, modes=MANUAL, refusal=error_in_auto)
 def continuous(task: Task, message: EMC_JOG_CONT) -> None:
     """Until it is stopped, or a limit is reached."""
     task.motion.send(MotCommand.JOG_CONT, vel=message.vel, **_target(task, message))
 
 
-@command(EMC_JOG_INCR, on=True, modes=MANUAL, refusal=passed_over)
+@command(EMC_JOG_INCR, on=True, modes=MANUAL, refusal=error_in_auto)
 def increment(task: Task, message: EMC_JOG_INCR) -> None:
     """By a distance."""
     task.motion.send(MotCommand.JOG_INCR, vel=message.vel, offset=message.incr, **_target(task, message))
 
 
-@command(EMC_JOG_ABS, on=True, modes=MANUAL, refusal=passed_over)
+@command(EMC_JOG_ABS, on=True, modes=MANUAL, refusal=error_in_auto)
 def absolute(task: Task, message: EMC_JOG_ABS) -> None:
     """To a position."""
     task.motion.send(MotCommand.JOG_ABS, vel=message.vel, offset=message.pos, **_target(task, message))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import command
+from emctask.commandtable import RUNNING, command
 from emctask.handlers.traj import check_spindle
 from nml.emc import (
     EMC_SPINDLE_BRAKE_ENGAGE,
@@ -33,7 +33,7 @@ def _spindles(task: Task, number: int) -> range:
     return range(len(task.config.spindles)) if number == ALL else range(number, number + 1)
 
 
-@command(EMC_SPINDLE_ON, EMC_SPINDLE_SPEED, on=True)
+@command(EMC_SPINDLE_ON, EMC_SPINDLE_SPEED, on=True, unless=RUNNING)
 def on(task: Task, message: EMC_SPINDLE_ON) -> None:
     """Turn with this signed speed."""
     for spindle in _spindles(task, message.spindle):
@@ -76,14 +76,14 @@ def constant(task: Task, message: Message) -> None:
     """End of a step; motion's steps end by themselves."""
 
 
-@command(EMC_SPINDLE_BRAKE_ENGAGE, on=True)
+@command(EMC_SPINDLE_BRAKE_ENGAGE, on=True, unless=RUNNING)
 def engage_brake(task: Task, message: EMC_SPINDLE_BRAKE_ENGAGE) -> None:
     """Engage the brake, which stops the spindle."""
     for spindle in _spindles(task, message.spindle):
         task.motion.send(MotCommand.SPINDLE_BRAKE_ENGAGE, spindle=spindle)
 
 
-@command(EMC_SPINDLE_BRAKE_RELEASE, on=True)
+@command(EMC_SPINDLE_BRAKE_RELEASE, on=True, unless=RUNNING)
 def release_brake(task: Task, message: EMC_SPINDLE_BRAKE_RELEASE) -> None:
     """Release the brake."""
     for spindle in _spindles(task, message.spindle):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from emctask import transitions
-from emctask.commandtable import NEVER, PassedOver, Refused, always, command, refuse
+from emctask.commandtable import NEVER, UNDER_WAY, PassedOver, Refused, always, command, refuse
 from nml.emc import (
     EMC_MOTION_ABORT,
     EMC_MOTION_ADAPTIVE,
@@ -191,7 +191,7 @@ def disable(task: Task, message: EMC_TRAJ_DISABLE) -> None:
     task.motion.send(MotCommand.DISABLE)
 
 
-@command(EMC_MOTION_SET_DOUT)
+@command(EMC_MOTION_SET_DOUT, unless=UNDER_WAY)
 def set_digital(task: Task, message: EMC_MOTION_SET_DOUT) -> None:
     """Set a digital output."""
     if message.index >= MAX_DIO:
@@ -200,7 +200,7 @@ def set_digital(task: Task, message: EMC_MOTION_SET_DOUT) -> None:
     task.motion.send(MotCommand.SET_DOUT, **fields)
 
 
-@command(EMC_MOTION_SET_AOUT)
+@command(EMC_MOTION_SET_AOUT, unless=UNDER_WAY)
 def set_analog(task: Task, message: EMC_MOTION_SET_AOUT) -> None:
     """Set an analog output."""
     if message.index >= MAX_AIO:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -44,6 +45,9 @@ def on_both(folder: Path, script: str, differences: Callable[[list[tuple[Any, An
     """Each step of a script, a display, on Debian's machine and on ours, which has its files below ``folder``."""
 
     def compare() -> list[tuple[Any, Any]]:
-        return list(zip(stock_machine.display(script), stock_machine.ours(folder, script), strict=True))
+        with ThreadPoolExecutor(1) as pool:
+            theirs = pool.submit(stock_machine.display, script)
+            ours = stock_machine.ours(folder, script)
+            return list(zip(theirs.result(), ours, strict=True))
 
     return first_same(compare, differences)
