@@ -29,7 +29,8 @@ AUTO = frozenset({Mode.AUTO})
 ANY = frozenset(Mode)
 NEVER: frozenset[Mode] = frozenset()
 
-RUNNING = frozenset({Interp.READING, Interp.WAITING})
+READING = frozenset({Interp.READING})
+RUNNING = READING | {Interp.WAITING}
 UNDER_WAY = RUNNING | {Interp.PAUSED}
 """States of the interpreter in which a program goes on, or is not over."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emctask.commandtable import AUTO, RUNNING, PassedOver, Refused, command
+from emctask.commandtable import AUTO, READING, PassedOver, Refused, command
 from nml.emc import (
     EMC_TASK_PLAN_CLOSE,
     EMC_TASK_PLAN_END,
@@ -74,7 +74,7 @@ def run(task: Task, message: EMC_TASK_PLAN_RUN) -> None:
     task.runner.run_program(message.line)
 
 
-@command(EMC_TASK_PLAN_EXECUTE, on=True, unless=RUNNING)
+@command(EMC_TASK_PLAN_EXECUTE, on=True, unless=READING)
 def execute(task: Task, message: EMC_TASK_PLAN_EXECUTE) -> None:
     """Run an MDI line, after those before it."""
     _must_be_homed(task, "issue MDI command")
