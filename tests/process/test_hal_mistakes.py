@@ -139,8 +139,9 @@ def test_a_closed_output_is_no_mistake(own_namespace: str) -> None:
 def test_ctrl_c_ends_a_command_that_waits_with_one_line(session: None) -> None:
     program = ["sh", "-c", "echo here; exec sleep 600"]
     waiting = subprocess.Popen(
-        [sys.executable, "-m", "hal.halcmd", "loadusr", "-W", *program], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, env=environment(), start_new_session=True,
+        # a test run in the background ignores SIGINT
+        ["env", "--default-signal=INT", sys.executable, "-m", "hal.halcmd", "loadusr", "-W", *program],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(), start_new_session=True,
     )  # fmt: skip
     try:
         assert waiting.stdout is not None
