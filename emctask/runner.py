@@ -220,12 +220,16 @@ class Runner:
         self._set(Interp.READING if task.plan.active else Interp.IDLE)
 
     def step(self) -> None:
-        """Go on to the end of one block: of the moves that motion holds, or of the next block in the list."""
+        """Go on to the end of one block: of the moves that motion holds, or of the next block in the list.
+
+        A pause may still be on its way to motion.
+        """
         task = self._task
-        if task.motion.status.paused and task.motion.status.depth:
+        held = task.motion.status.paused or not task.motion.echoed
+        if held and task.motion.status.depth:
             task.motion.send(MotCommand.STEP)
             return
-        if task.motion.status.paused:
+        if held:
             task.motion.send(MotCommand.RESUME)
         self.stepping = True
         task.sequencer.only_block = None
