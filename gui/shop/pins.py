@@ -83,7 +83,11 @@ def main(arguments: list[str] | None = None) -> int:
     """Run until SIGTERM or SIGINT; the exit code."""
     options = _options(arguments)
     signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)
-    send, leave = (_printer, lambda: None) if options.dryrun else _to_broker(options)
+    try:
+        send, leave = (_printer, lambda: None) if options.dryrun else _to_broker(options)
+    except ImportError as error:
+        print(f"{NAME}: {error}; pip install 'pyemc[shop]' brings what talks to a broker", file=sys.stderr)
+        return 1
     component = hal.component(NAME)
     try:
         enable = component.newpin("enable", hal.HAL_BIT, hal.HAL_IN)

@@ -83,3 +83,12 @@ def test_what_is_missing_is_told(tmp_path: Path) -> None:
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.returncode == 2
     assert "'level': keys=NAME,... is needed" in done.stderr
+
+
+def test_without_the_extra_of_the_package_it_says_what_is_missing() -> None:
+    without = "import sys; sys.modules['paho'] = None; from gui.shop import pins; sys.exit(pins.main(['keys=a']))"
+    done = subprocess.run(
+        [sys.executable, "-c", without], env=environment(), capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr.count("\n")) == (1, 1)
+    assert "pip install 'pyemc[shop]'" in done.stderr
