@@ -405,7 +405,9 @@ cdef void wait_joints(Motion* m) noexcept nogil:
         cancel_homing(m)
     elif not busy:
         m.home_sequence += 1
-        m.home_step = SEQUENCE_START_JOINTS if m.home_all else SEQUENCE_IDLE
+        m.home_step = SEQUENCE_IDLE
+        if m.home_all:  # at once: no status may show a machine between two steps, which does not home
+            start_joints(m)
 
 
 cdef void cancel_homing(Motion* m) noexcept nogil:

@@ -207,6 +207,16 @@ def test_home_all_goes_through_the_sequence_in_order() -> None:
     assert m.errors() == []
 
 
+def test_from_the_first_step_of_home_all_to_the_last_some_joint_homes_in_every_period() -> None:
+    m = mill("free")
+    for joint in range(3):
+        homing(m, joint, sequence=joint)
+    m.send(C.JOINT_HOME, joint=-1)
+    while not m["motion.is-all-homed"]:
+        m.step()
+        assert m["motion.is-all-homed"] or any(m[f"joint.{joint}.homing"] for joint in range(3))
+
+
 @pytest.mark.parametrize(
     ("sequences", "homed", "complaint"),
     [
