@@ -487,7 +487,7 @@ cdef class Interpreter:
                 return ENDFILE
             return self.run_block()
         except InterpError as error:
-            raise self.placed(error)
+            raise self.placed(error, typed=not self.call_level)
 
     def run_file(self, stop_on_error=True, on_error=None, on_progress=None):
         """Read and execute until the program is over; ``on_error(InterpError)`` is told, and so may go on.
@@ -519,11 +519,11 @@ cdef class Interpreter:
                 if stop_on_error or at_end:
                     return EXIT
 
-    def placed(self, error):
-        """The error with its place, and the calls it happened in left."""
+    def placed(self, error, bint typed=False):
+        """The error with its place, and the calls it happened in left; ``typed``: it stands in no file."""
         cdef State s = self.state
         if error.place is None:
-            source = self.flow.source
+            source = None if typed else self.flow.source
             file = source.path if source is not None else "MDI"
             error = InterpError(error.message, Place(file, s.line if source is not None else 1, self.column()), self.block_text)
         s.block.steps = 0

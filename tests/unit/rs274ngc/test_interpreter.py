@@ -34,6 +34,17 @@ def test_an_error_names_file_line_and_column(interp, tmp_path):
     assert caught.value.block == "  g0 y2 q3"
 
 
+def test_an_error_of_a_typed_line_is_not_one_of_the_program_that_ran_before(interp, tmp_path):
+    program = tmp_path / "right.ngc"
+    program.write_text("g0 x1\nm2\n")
+    interp.open(program)
+    interp.run_file()
+    with pytest.raises(InterpError) as caught:
+        interp.execute_mdi("g0 x1 q3")
+    place = caught.value.place
+    assert (place.file, place.line, place.column) == ("MDI", 1, 7)
+
+
 def test_an_error_in_a_subroutine_leaves_the_call(interp, tmp_path):
     program = tmp_path / "call.ngc"
     program.write_text("o1 sub\ng0 x[1/0]\no1 endsub\no1 call\ng0 y7\nm2\n")
