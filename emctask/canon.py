@@ -13,6 +13,7 @@ from typing import Any
 
 from emctask import operations as op
 from emctask.config import MachineConfig
+from emctask.homing import ALL
 from emctask.interplist import InterpList, Operation
 from emctask.ioclient import IoClient
 from emctask.motion import MOVE, MotionClient
@@ -130,6 +131,12 @@ class TaskCanon(WorldModel):
             vel, ini_maxvel, acc, 0.0, TANGENT, 0, 0.0,
         )  # fmt: skip
         self.queue.append((op.rigid_tap, (packed, scale), line, block))
+
+    def home_cycle(self) -> None:
+        self.put(op.home, ALL)
+
+    def home_cycle_joint(self, joint: int) -> None:
+        self.put(op.home, joint)
 
     def start_speed_feed_synch(self, spindle, feed_per_revolution, velocity_mode):  # type: ignore[no-untyped-def]
         MoveCanon.start_speed_feed_synch(self, spindle, feed_per_revolution, velocity_mode)

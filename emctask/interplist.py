@@ -34,6 +34,10 @@ class Exec(IntEnum):
     WAITING_FOR_SPINDLE_ORIENTED = 10
 
 
+class ExecutionError(Exception):
+    """An entry failed; the text is for the operator, and the program is aborted."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
     """A kind of entry."""

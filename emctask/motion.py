@@ -14,6 +14,7 @@ from typing import Any
 from emctask.layout import Span, image
 from emctask.partner import SignOfLife
 from nml.channel import Channel
+from nml.emc.constants import KINEMATICS_TYPE as Kinematics
 from nml.emc.emcmot import (
     EMCMOT_COMMAND,
     EMCMOT_ERROR,
@@ -111,6 +112,11 @@ class MotionClient:
         """Is every joint homed?"""
         joints = self.status.joint_status
         return all(joints[n].homed for n in range(self.status.num_joints))
+
+    @property
+    def may_coordinate(self) -> bool:
+        """Can the tool be moved along a path? Where an axis is no joint, all joints must be homed for it."""
+        return self.all_homed or self.status.kinematics_type == Kinematics.IDENTITY
 
     @property
     def homing(self) -> bool:

@@ -48,6 +48,12 @@ def probe(machine: Sequencer, payload: tuple[bytes, int]) -> None:
     machine.motion.send_move(payload[0], line=machine.current_line, probe_type=payload[1])
 
 
+@operation(before=MOTION_AND_IO, after=MOTION, moves=True)
+def home(machine: Sequencer, joint: int) -> None:
+    """G28.2: a joint, or all of them (-1)."""
+    machine.home(joint)
+
+
 @operation(before=MOTION, after=MOTION, moves=True)
 def rigid_tap(machine: Sequencer, payload: tuple[bytes, float]) -> None:
     """(packed move, scale of the way back)."""

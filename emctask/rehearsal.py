@@ -179,6 +179,12 @@ class RehearsalCanon(WorldModel):
 
     set_aux_output_value = set_motion_output_value
 
+    def home_cycle(self) -> None:
+        self.left_out["G28.2"] = None
+
+    def home_cycle_joint(self, joint: int) -> None:
+        self.left_out["G28.2"] = None
+
     def orient_spindle(self, spindle: int, orientation: float, mode: int) -> None:
         self.left_out["M19"] = None
 

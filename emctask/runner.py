@@ -11,15 +11,15 @@ import logging
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from emctask.interplist import ExecutionError
 from emctask.saver import Saver
-from emctask.sequencer import ExecutionError
 from nml.emc import EMC_TOOL_ABORT
 from nml.emc.constants import EMC_IO_ABORT_REASON_ENUM as Reason
 from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
 from nml.emc.constants import ORDER_OUTCOME as Outcome
-from nml.emc.emcmot import MotCommand
+from nml.emc.emcmot import MotCommand, MotionState
 from nml.errors import PyemcError
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class Runner:
             text, serial = task.mdi_queue.popleft()
             task.mdi_text = text
             self._start(lambda: task.plan.start_mdi(text), serial)
-        if self._begin is not None and not task.plan.must_synch and task.sequencer.idle:
+        if self._begin is not None and not task.plan.must_synch and task.sequencer.idle and self._coordinated():
             begin, self._begin = self._begin, None
             self._guard(begin)
         if task.plan.active and not task.paused:
@@ -99,6 +99,15 @@ class Runner:
             task.fail(str(error))
             self.abort(Reason.TASK_EXEC_ERROR)
         self._finish_when_done()
+
+    def _coordinated(self) -> bool:
+        """Does motion move as programs need it? A homing cycle that failed has left it in joint mode."""
+        motion = self._task.motion
+        if motion.state is not MotionState.FREE or not motion.may_coordinate:
+            return True
+        if motion.settled:
+            motion.send(MotCommand.COORD)
+        return False
 
     def _guard(self, work: Callable[[], None]) -> None:
         """Let the interpreter work; an error ends the program after the blocks before it are done."""

@@ -11,7 +11,8 @@ from typing import Protocol
 
 from emctask import operations as op
 from emctask.config import MachineConfig
-from emctask.interplist import Exec, InterpList
+from emctask.homing import Homing, home
+from emctask.interplist import Exec, ExecutionError, InterpList
 from emctask.ioclient import IoClient
 from emctask.motion import MotionClient
 from emctask.places import Block
@@ -21,10 +22,6 @@ from nml import clock
 ORIENT_COMPLETE, ORIENT_FAULTED = 1, 3
 WAIT_IMMEDIATE, WAIT_RISE, WAIT_FALL, WAIT_HIGH, WAIT_LOW = range(5)
 DIGITAL = 1
-
-
-class ExecutionError(Exception):
-    """An entry failed; the text is for the operator, and the program is aborted."""
 
 
 class Hooks(Protocol):
@@ -61,9 +58,10 @@ class Sequencer:
         self.deadline = 0.0
         self._arrived: Callable[[], bool] = self._never_waits
         self._command: UserCommand | None = None
+        self._homing: Homing | None = None
         self._conditions: dict[Exec, Callable[[], bool]] = {
             Exec.DONE: self._never_waits,
-            Exec.WAITING_FOR_MOTION: lambda: self.motion.settled,
+            Exec.WAITING_FOR_MOTION: self._motion_done,
             Exec.WAITING_FOR_IO: self._io_done,
             Exec.WAITING_FOR_MOTION_AND_IO: lambda: self.motion.settled and self._io_done(),
             Exec.WAITING_FOR_DELAY: lambda: self._arrived(),
@@ -133,6 +131,7 @@ class Sequencer:
         if self._command is not None:
             self._command.stop()
             self._command = None
+        self._homing = None
 
     # --- What operations call
 
@@ -196,11 +195,22 @@ class Sequencer:
         except OSError as error:
             raise ExecutionError(str(error)) from None
 
+    def home(self, joint: int) -> None:
+        """Start the homing cycle of a joint, or of all."""
+        self._homing = home(self.motion, self.config.joints, joint)
+
     # --- Conditions
 
     @staticmethod
     def _never_waits() -> bool:
         return True
+
+    def _motion_done(self) -> bool:
+        if self._homing is not None:
+            for _ in self._homing:
+                return False
+            self._homing = None
+        return self.motion.settled
 
     def _io_done(self) -> bool:
         if not self.io.done:

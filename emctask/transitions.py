@@ -16,7 +16,6 @@ from nml.emc.constants import EMC_TASK_INTERP_ENUM as Interp
 from nml.emc.constants import EMC_TASK_MODE_ENUM as Mode
 from nml.emc.constants import EMC_TASK_STATE_ENUM as State
 from nml.emc.constants import EMC_TRAJ_MODE_ENUM as TrajMode
-from nml.emc.constants import KINEMATICS_TYPE as Kinematics
 from nml.emc.emcmot import MotCommand, MotionState
 
 if TYPE_CHECKING:
@@ -80,7 +79,7 @@ def _resume_mode(task: Task) -> None:
     """The mode stays as it was while the machine was off, where motion can take it up without being homed anew."""
     if task.mode is Mode.MANUAL:
         return
-    if task.motion.all_homed or task.motion.status.kinematics_type == Kinematics.IDENTITY:
+    if task.motion.may_coordinate:
         task.motion.send(MotCommand.COORD)
     else:
         task.mode = Mode.MANUAL

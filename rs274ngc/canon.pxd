@@ -28,6 +28,8 @@ cdef class Canon:
     cpdef void stop_speed_feed_synch(self) except *
     cpdef void dwell(self, double seconds) except *
     cpdef void stop(self) except *
+    cpdef void home_cycle(self) except *
+    cpdef void home_cycle_joint(self, int joint) except *
     cpdef void set_spindle_mode(self, int spindle, double css_max) except *
     cpdef void set_spindle_speed(self, int spindle, double speed) except *
     cpdef void start_spindle_clockwise(self, int spindle, bint wait_for_atspeed) except *

@@ -117,6 +117,12 @@ cdef class Canon:
     cpdef void stop(self) except *:
         """Motion comes to a stop here."""
 
+    cpdef void home_cycle(self) except *:
+        """Home all joints in their sequence (G28.2 P-1); the machine may stand elsewhere afterwards."""
+
+    cpdef void home_cycle_joint(self, int joint) except *:
+        """Home one joint, or the group that homes with it (G28.2 P)."""
+
     # --- Spindles
 
     cpdef void set_spindle_mode(self, int spindle, double css_max) except *:

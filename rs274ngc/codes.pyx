@@ -21,7 +21,8 @@ from rs274ngc.modes cimport (
     set_retract, set_speed, set_spindle_mode, set_units,
 )
 from rs274ngc.motion cimport (
-    arc, cancel_motion, check_dwell, check_machine_coordinates, check_turns, dwell, probe, reference_move, straight,
+    arc, cancel_motion, check_dwell, check_home, check_machine_coordinates, check_turns, dwell, home, probe, reference_move,
+    straight,
 )
 from rs274ngc.offsets cimport (
     axis_offset, check_axis_offset, check_g10, select_origin, set_data, store_reference, tool_length,
@@ -65,6 +66,7 @@ g(4, 0, "P", dwell, "Dwell P seconds", check_dwell, NO_FLAGS, STEP_DWELL)
 g(10, 0, "LPRIJQ", set_data, "Set tool table (L0, L1, L10, L11) or coordinate system (L2, L20)", check_g10, AXES_TAKEN)
 g(28, 0, "", reference_move, "Go to the first reference point", NULL, AXES_TAKEN)
 g(28.1, 0, "", store_reference, "Store the first reference point")
+g(28.2, 0, "P", home, "Home joint P, or with P-1 all joints in their sequence", check_home)
 g(30, 0, "", reference_move, "Go to the second reference point", NULL, AXES_TAKEN)
 g(30.1, 0, "", store_reference, "Store the second reference point")
 g(52, 0, "", axis_offset, "Local offset", check_axis_offset, AXES_TAKEN)

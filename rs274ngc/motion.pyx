@@ -1,4 +1,4 @@
-"""Codes that move in a straight line or an arc: G0, G1, G2, G3, G38.n, G28, G30; G4, G53 and G80 beside them.
+"""Codes that move in a straight line or an arc: G0, G1, G2, G3, G38.n, G28, G30; beside them G4, G28.2, G53, G80.
 
 Each function is the handler of the codes that ``codes`` names with it.
 """
@@ -14,9 +14,11 @@ from rs274ngc.state cimport WAIT_PROBE, State, fail, fail_word
 cdef int INCHES = CANON_UNITS_INCHES, SIDE_OFF = CANON_SIDE_OFF
 cdef int XY = CANON_PLANE_XY, XZ = CANON_PLANE_XZ, YZ = CANON_PLANE_YZ
 cdef str AXES = "XYZABCUVW"
+cdef double JOINTS_MAX = 1e6        # a number far above any joint; the machine says which ones it has
 
 cdef enum:
     G_MOTION_GROUP = 1
+    ALL_JOINTS = -1     # P word of G28.2
 
 
 cdef int check_dwell(State s, Block* b, int code) except -1:
@@ -232,3 +234,27 @@ cdef int reference_move(State s, Block* b, int code) except -1:
             if not has(b, axis_words[k]):
                 home[k] = s.pos[k]
     return traverse(s, home)
+
+
+cdef int check_home(State s, Block* b, int code) except -1:
+    cdef double p = b.value[W_P]
+    if b.words & (M_AXES | M_POLAR):
+        return fail(s, "G28.2 takes no axis words: P is the number of a joint", b.g_at[0])
+    if not has(b, W_P):
+        return fail(s, "G28.2 needs a P word: P0, P1 and so on home one joint, P-1 homes them all", b.g_at[0])
+    if p != floor(p) or not ALL_JOINTS <= p <= JOINTS_MAX:
+        return fail_word(s, "The P word of G28.2 must be the number of a joint, or P-1 for all joints", W_P)
+    return 0
+
+
+cdef int home(State s, Block* b, int code) except -1:
+    """G28.2 P: joints are homed; what follows is read when they are, from where the machine stands then"""
+    cdef int joint = <int>b.value[W_P]
+    if s.comp_side != SIDE_OFF:
+        return fail(s, "Cannot home with cutter radius compensation on", b.g_at[0])
+    if joint == ALL_JOINTS:
+        s.canon.home_cycle()
+    else:
+        s.canon.home_cycle_joint(joint)
+    s.must_finish = True
+    return 0

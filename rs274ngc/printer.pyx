@@ -304,6 +304,12 @@ cdef class PrintCanon(OfflineCanon):
     cpdef void dwell(self, double seconds) except *:
         self.say("DWELL", f"{seconds:.4f}")
 
+    cpdef void home_cycle(self) except *:
+        self.say("HOME_CYCLE")
+
+    cpdef void home_cycle_joint(self, int joint) except *:
+        self.say("HOME_CYCLE_JOINT", str(joint))
+
     # --- Spindles and tools
 
     cpdef void set_spindle_mode(self, int spindle, double css_max) except *:

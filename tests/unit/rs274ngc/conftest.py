@@ -13,6 +13,7 @@ COMMANDS = (
     "straight_traverse", "straight_feed", "arc_feed", "set_feed_rate", "message", "comment", "dwell", "select_tool",
     "change_tool", "program_end", "program_stop", "optional_program_stop", "set_g5x_offset", "set_g92_offset",
     "start_spindle_clockwise", "stop_spindle_turning", "set_motion_output_value", "set_aux_output_value",
+    "home_cycle", "home_cycle_joint",
 )  # fmt: skip
 
 

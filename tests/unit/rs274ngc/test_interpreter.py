@@ -232,3 +232,30 @@ def test_without_fanuc_subprograms_m99_ends_the_main_program_only(tmp_path, monk
     assert rs274.main(["-g", "-i", "machine.ini", "part.ngc"]) == status
     output = capfd.readouterr()
     assert ("PROGRAM_END" in output.out, "but found m99" in output.err) == (status == 0, status == 1)
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ("g28.2", "G28.2 needs a P word: P0, P1 and so on home one joint, P-1 homes them all"),
+        ("g28.2 p-2", "The P word of G28.2 must be the number of a joint, or P-1 for all joints"),
+        ("g28.2 p1.5", "The P word of G28.2 must be the number of a joint, or P-1 for all joints"),
+        ("g0\ng28.2 p0 x1", "G28.2 takes no axis words: P is the number of a joint"),
+        ("g41.1 d1\ng28.2 p0", "Cannot home with cutter radius compensation on"),
+    ],
+)
+def test_what_is_wrong_with_a_homing_line_is_said(interp, lines, message):
+    *before, line = lines.splitlines()
+    for text in before:
+        interp.execute_mdi(text)
+    with pytest.raises(InterpError) as caught:
+        interp.execute_mdi(line)
+    assert caught.value.message == message
+
+
+def test_after_a_homing_line_nothing_is_read_before_it_is_done(run):
+    canon = run("g28.2 p1\ng28.2 p-1\nm2\n")
+    assert canon.calls[:2] == [("home_cycle_joint", (1,)), ("home_cycle", ())]
+    interp = Interpreter(OfflineCanon())
+    interp.init()
+    assert interp.execute_mdi("g28.2 p-1") == INTERP_EXECUTE_FINISH
