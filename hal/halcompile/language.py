@@ -18,12 +18,14 @@ TYPES = {
     "signed": "s32", "s32": "s32", "si32": "s32", "unsigned": "u32", "u32": "u32", "ui32": "u32",
     "s64": "s64", "si64": "s64", "sint": "s64", "u64": "u64", "ui64": "u64", "uint": "u64",
 }  # fmt: skip
+SET_BY_CALL = frozenset({"bool", "real", "sint", "uint", "si32", "ui32"})
+"""Types of which the code also writes ``NAME_set(value)``, as LinuxCNC's of 2026 must."""
 PIN_DIRECTIONS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 PARAM_DIRECTIONS = {"r": "HAL_RO", "rw": "HAL_RW"}
 TEXTS = ("description", "examples", "notes", "see_also", "license", "author")
 OPTIONS = (
-    "singleton", "default_count", "count_function", "rtapi_app", "data", "extra_setup", "extra_cleanup", "userspace",
-    "userinit", "extra_link_args", "extra_compile_args", "constructable", "homemod", "tpmod", "period",
+    "singleton", "default_count", "count_function", "rtapi_app", "data", "extra_setup", "extra_cleanup", "post_export",
+    "userspace", "userinit", "extra_link_args", "extra_compile_args", "constructable", "homemod", "tpmod", "period",
 )  # fmt: skip
 NOT_POSSIBLE = {
     "homemod": "homing is part of motmod here",
@@ -72,6 +74,7 @@ class Item:
     condition: str = ""
     value: str = ""
     doc: str = ""
+    set_by_call: bool = False
 
 
 @dataclass
@@ -241,9 +244,10 @@ class _Parser:
         self.read_item(False, self.choice(PARAM_DIRECTIONS, "direction of a parameter"))
 
     def read_item(self, is_pin: bool, direction: str) -> None:
+        set_by_call = self.token.text in SET_BY_CALL and direction != PIN_DIRECTIONS["in"]
         type_ = self.choice(TYPES, "type")
         token = self.take("name", "a name")
-        item = Item(is_pin, direction, type_, token.text, token.at)
+        item = Item(is_pin, direction, type_, token.text, token.at, set_by_call=set_by_call)
         if self.comes("["):
             item.size = self.number("the size of the array")
             item.how_many = self.expression("]") if self.comes(":") else ""

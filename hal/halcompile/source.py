@@ -149,6 +149,8 @@ class _Writer:
         rows += [f"static void {to_c(f.name)}(struct __comp_state *__comp_inst, long period);" for f in made.functions]
         if made.option("extra_setup"):
             rows.append("static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg);")
+        if made.option("post_export"):
+            rows.append("static int post_export(struct __comp_state *__comp_inst, char *prefix, long extra_arg);")
         if made.option("extra_cleanup"):
             rows.append("static void extra_cleanup(void);")
         if made.option("count_function"):
@@ -191,7 +193,8 @@ class _Writer:
         for function in made.functions:
             rows += _exported_function(function)
         rows += ["*(__comp_last_inst ? &__comp_last_inst->_next : &__comp_first_inst) = inst;"]
-        rows += ["__comp_last_inst = inst;", "(void)r;", "return 0;"]
+        rows += ["__comp_last_inst = inst;", "(void)r;"]
+        rows.append("return post_export(inst, prefix, extra_arg);" if made.option("post_export") else "return 0;")
         body = "".join(f"    {row}\n" for row in rows)
         return f"\nstatic int export(char *prefix, long extra_arg{extra})\n{{\n{body}}}\n"
 
@@ -220,11 +223,12 @@ class _Writer:
     # ---- the author's part ----
 
     def macros(self) -> str:
-        names = ["FUNCTION", "EXTRA_SETUP", "EXTRA_CLEANUP", "fperiod", "FOR_ALL_INSTS"]
+        names = ["FUNCTION", "EXTRA_SETUP", "POST_EXPORT", "EXTRA_CLEANUP", "fperiod", "FOR_ALL_INSTS"]
         instance = "struct __comp_state *__comp_inst"
         rows = [
             f"#define FUNCTION(name) static void name({instance}, long period)",
             f"#define EXTRA_SETUP() static int extra_setup({instance}, char *prefix, long extra_arg)",
+            f"#define POST_EXPORT() static int post_export({instance}, char *prefix, long extra_arg)",
             "#define EXTRA_CLEANUP() static void extra_cleanup(void)",
             "#define fperiod (period * 1e-9)",
             f"#define FOR_ALL_INSTS() for ({instance} = __comp_first_inst; __comp_inst; "
@@ -236,6 +240,9 @@ class _Writer:
         for item in self.made.items:
             names.append(to_c(item.name))
             rows.append(_macro(item))
+            if item.set_by_call:
+                names.append(f"{to_c(item.name)}_set")
+                rows.append(_setter(item))
         for variable in self.made.variables:
             names.append(variable.name)
             rows.append(f"#define {variable.name} (__comp_inst->{variable.name})")
@@ -258,6 +265,12 @@ def _macro(item: Item) -> str:
     value = f"*({place})" if item.is_pin else place
     only_read = item.is_pin and item.direction == "HAL_IN"
     return f"#define {name}{'(i)' if item.size else ''} ({'0 + ' if only_read else ''}{value})"
+
+
+def _setter(item: Item) -> str:
+    name = to_c(item.name)
+    arguments, place = ("i, value", f"{name}(i)") if item.size else ("value", name)
+    return f"#define {name}_set({arguments}) ({place} = (value))"
 
 
 def _initial(variable: Variable) -> list[str]:

@@ -50,6 +50,29 @@ FUNCTION(_) {
 }
 FUNCTION(clear) { sum = 0; }
 """
+CALLS = """\
+component calls "Shift register that writes its pins by calls, as LinuxCNC's components of 2026 do";
+pin in bool in;
+pin out bool out-# [4];
+pin io sint count;
+pin out si32 small;
+pin out real half_;
+param r uint number;
+option period no;
+option post_export yes;
+function _;
+license "GPL";
+;;
+POST_EXPORT() { number_set(extra_arg + 10); return prefix[0] == 'x' ? -EINVAL : 0; }
+FUNCTION(_) {
+    rtapi_sint now = count;
+    for (int i = 3; i > 0; i--) out_set(i, out(i - 1));
+    out_set(0, in);
+    count_set(now + 3000000000);
+    small_set(now > 0 ? -1 : 7);
+    half__set((rtapi_real)now / 2);
+}
+"""
 RAW = """\
 #include "rtapi.h"
 #include "rtapi_app.h"
@@ -158,6 +181,26 @@ def test_a_component_has_its_pins_and_does_its_work(host: Host, modules: Path) -
     period(host, "a.clear")
     period(host, "a")
     assert hal.value("a.total") == 0.5
+
+
+def test_pins_and_parameters_may_be_written_by_calls(host: Host, modules: Path) -> None:
+    installed(modules, "calls.comp", CALLS)
+    host.load("calls", ["names=a,b"])
+    hal = host.hal
+    assert [hal.value("a.number"), hal.value("b.number")] == [10, 11]
+    hal.set_item("a.in", "1")
+    for _ in range(2):
+        period(host, "a")
+    assert [hal.value(f"a.out-{n}") for n in range(4)] == [True, True, False, False]
+    assert [hal.value(f"a.{name}") for name in ("count", "small", "half")] == [6_000_000_000, -1, 1.5e9]
+    assert hal.value("b.count") == 0
+
+
+def test_what_an_instance_says_after_its_pins_are_made_counts(host: Host, modules: Path) -> None:
+    installed(modules, "calls.comp", CALLS)
+    with pytest.raises(HalError):
+        host.load("calls", ["names=x"])
+    assert host.hal.find("x.in") is None
 
 
 def test_links_made_and_cut_later_are_followed(host: Host, modules: Path) -> None:
