@@ -9,16 +9,16 @@ from nml.emc.emcmot import MotCommand
 
 
 def configure_motion(motion: MotionClient, config: MachineConfig) -> None:
-    """Send everything that motion must know before the machine may be switched on."""
+    """Send everything that motion must know before the machine may be switched on, in the order of LinuxCNC's task."""
     motion.send(MotCommand.SET_NUM_JOINTS, joint=len(config.joints))
     motion.send(MotCommand.SET_NUM_SPINDLES, spindle=len(config.spindles))
     motion.send(MotCommand.SET_HEARTBEAT_TIMEOUT, timeout=motion.watchdog_s)
     path_limits(motion, config)
-    motion.send(MotCommand.SET_MAX_FEED_OVERRIDE, scale=config.max_feed_override)
-    motion.send(MotCommand.SET_WORLD_HOME, pos=config.world_home)
     arc_blend(motion, config.arc_blend)
+    motion.send(MotCommand.SET_MAX_FEED_OVERRIDE, scale=config.max_feed_override)
     inhibit = int(config.no_probe_jog_error) | int(config.no_probe_home_error) << 1
     motion.send(MotCommand.SET_PROBE_ERR_INHIBIT, flags=inhibit)
+    motion.send(MotCommand.SET_WORLD_HOME, pos=config.world_home)
     for number, joint in enumerate(config.joints):
         _send_joint(motion, number, joint)
     for axis, values in config.axes.items():
@@ -58,10 +58,10 @@ def _send_joint(motion: MotionClient, number: int, joint: JointConfig) -> None:
     send(MotCommand.SET_JOINT_POSITION_LIMITS, joint=number, minLimit=joint.min_limit, maxLimit=joint.max_limit)
     send(MotCommand.SET_JOINT_MAX_FERROR, joint=number, maxFerror=joint.ferror)
     send(MotCommand.SET_JOINT_MIN_FERROR, joint=number, minFerror=joint.min_ferror)
+    send_homing(motion, number, joint)
     send(MotCommand.SET_JOINT_VEL_LIMIT, joint=number, vel=joint.max_velocity)
     send(MotCommand.SET_JOINT_ACC_LIMIT, joint=number, acc=joint.max_acceleration)
     send(MotCommand.SET_JOINT_JERK_LIMIT, joint=number, jerk=joint.max_jerk)
-    send_homing(motion, number, joint)
     send_compensation(motion, number, joint.compensation)
     send(MotCommand.JOINT_ACTIVATE, joint=number)
 
