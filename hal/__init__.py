@@ -4,6 +4,7 @@ Rooms: ``_shm`` and ``_records`` the tables in shared memory, ``core`` their rul
 ``client`` the realtime host, ``session``, ``commands`` and ``show`` the shell, ``components`` the realtime ones.
 """
 
+from hal import query
 from hal.module import (
     HAL_BIT,
     HAL_FLOAT,
@@ -60,6 +61,7 @@ from hal.module import (
     stream,
     streamer_base,
 )
+from hal.query import CompType
 
 __all__ = [
     "HAL_BIT",
@@ -87,6 +89,7 @@ __all__ = [
     "MSG_INFO",
     "MSG_NONE",
     "MSG_WARN",
+    "CompType",
     "Dir",
     "Param",
     "Pin",
@@ -110,6 +113,7 @@ __all__ = [
     "is_userspace",
     "new_sig",
     "pin_has_writer",
+    "query",
     "sampler_base",
     "set_msg_level",
     "set_p",
