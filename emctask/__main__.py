@@ -9,6 +9,7 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 
+from emctask.callstacks import CallStacks
 from emctask.config import MachineConfig, read_config
 from emctask.inipins import IniPins
 from emctask.ioclient import IoClient
@@ -20,6 +21,7 @@ from emctask.task import Task
 from nml import clock
 from nml.channel import Channel
 from nml.config import NmlConfig
+from nml.emc.calls import CALLS_BUFFER
 from nml.errors import ConfigError, PyemcError
 from nml.inifile import IniFile
 
@@ -78,7 +80,7 @@ def build(ini: IniFile, config: MachineConfig) -> Task:
         channel("emcCommand"),
         motion,
         io,
-        StatusWriter(config, channel("emcStatus")),
+        StatusWriter(config, channel("emcStatus"), CallStacks(channel(CALLS_BUFFER))),
         OperatorLine(errors, Channel.connect(errors.line, nml.observer("emcError"))),
         channel("emcResults"),
         pins,

@@ -17,7 +17,7 @@ from emctask.homing import ALL
 from emctask.interplist import InterpList, Operation
 from emctask.ioclient import IoClient
 from emctask.motion import MOVE, MotionClient
-from emctask.places import Block, Modes, Place, Places
+from emctask.places import Block, Calls, Modes, Place, Places
 from emctask.usercommands import find_program
 from emctask.world import WorldModel
 from nml.emc import (
@@ -51,7 +51,7 @@ class TaskCanon(WorldModel):
         self.queue = InterpList()
         self.places = Places()
         self.line_number = 0
-        self.block = Block("", 0)
+        self.block = Block("")
         self._block_before = self.block
         self.tool_offset = self.coords.tool
         """The tool offset as far as the program was read: X to W, machine units."""
@@ -59,9 +59,9 @@ class TaskCanon(WorldModel):
         """Did the program change the tool table since the interpreter took it over?"""
         self.log_path: Path | None = None
 
-    def begin_block(self, line: int, file: str, level: int) -> None:
+    def begin_block(self, line: int, file: str, calls: Calls) -> None:
         """What comes now belongs to this block."""
-        self._block_before, self.block = self.block, Block(file, level, self.block)
+        self._block_before, self.block = self.block, Block(file, calls, self.block)
         self.line_number = line
 
     def end_block(self, modes: Modes, offsets: tuple[float, ...]) -> None:

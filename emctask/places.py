@@ -15,6 +15,10 @@ RESTORABLE = frozenset((*PLANES, *LENGTHS, *FEEDS, *SYSTEMS, *PATHS))
 """G codes times ten that an abort brings back; motion, compensation and tool length are not modes to come back to."""
 
 
+Calls = tuple[tuple[str, str, int], ...]
+"""The subroutine calls under way, the outermost first: what is called, file of the call, its line."""
+
+
 class Modes(NamedTuple):
     """The interpreter's active codes at some place of the program."""
 
@@ -45,11 +49,11 @@ class Modes(NamedTuple):
 class Block:
     """One block of a program, and what is in force after it; until it has been executed, what was before it."""
 
-    __slots__ = ("file", "level", "modes", "offsets", "tool_offset")
+    __slots__ = ("calls", "file", "modes", "offsets", "tool_offset")
 
-    def __init__(self, file: str, level: int, before: Block | None = None) -> None:
+    def __init__(self, file: str, calls: Calls = (), before: Block | None = None) -> None:
         self.file = file
-        self.level = level
+        self.calls = calls
         self.modes: Modes | None = before.modes if before else None
         self.offsets: tuple[float, ...] = before.offsets if before else ()
         """The parameters of ``emctask.standing.STORED``."""

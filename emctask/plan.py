@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from emctask import standing
 from emctask.canon import TaskCanon
-from emctask.places import Block, Modes
+from emctask.places import Block, Calls, Modes
 from emctask.runfromline import RunFromLine
 from nml import clock
 from nml.errors import InterpError
@@ -68,7 +68,7 @@ class Plan:
         self._modes = Modes((), (), ())
         self._offsets = standing.read_offsets(self.interp)
         """The stored offsets as far as the program was read."""
-        self._before = Block("", 0)
+        self._before = Block("")
         """What was in force when the program or MDI line began."""
         self._restore: Block | None = None
         """Where the machine was when a program was aborted; the interpreter had read on."""
@@ -116,7 +116,7 @@ class Plan:
     def _begin(self, source: Source) -> None:
         self._last_line = ""
         self.source = source
-        self._before = self.canon.block = Block(self.file, 0)
+        self._before = self.canon.block = Block(self.file)
         self.canon.end_block(self._current_modes(), self._offsets)
         self.sequencer.current_block = None
         self.sequencer.current_line = 0
@@ -199,7 +199,7 @@ class Plan:
 
     def _execute(self, execute: Callable[[], int]) -> None:
         canon, interp = self.canon, self.interp
-        canon.begin_block(interp.line, self.file if self.source is Source.PROGRAM else "", interp.call_level)
+        canon.begin_block(interp.line, self.file if self.source is Source.PROGRAM else "", self.calls)
         code = execute()
         if code == INTERP_EXIT:
             self._reached_end()
@@ -209,6 +209,12 @@ class Plan:
         if code == INTERP_EXIT or MAY_OFFSET.search(interp.block_text.replace(" ", "")):
             self._offsets = standing.read_offsets(interp)
         canon.end_block(self.modes, self._offsets)
+
+    @property
+    def calls(self) -> Calls:
+        """The subroutine calls that the interpreter stands in; a line that was typed in stands in no file."""
+        calls = self.interp.calls if self.interp.call_level else ()
+        return ((calls[0][0], "", 0), *calls[1:]) if calls and self.source is Source.MDI else calls
 
     @property
     def modes(self) -> Modes:

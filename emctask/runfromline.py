@@ -140,7 +140,7 @@ class RunFromLine:
         differences = [*self._code_differences(modes), *self._offset_differences()]
         changes_tool = self.changes_tool
         self.leave()
-        self._machine.begin_block(self._line, self._file, 0)
+        self._machine.begin_block(self._line, self._file, ())
         hand_over(self.rehearsal, self._machine)
         for arguments in self.rehearsal.table_entries:
             self._machine.set_tool_table_entry(*arguments)

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from emctask.callstacks import CallStacks
 from emctask.config import MachineConfig
 from emctask.layout import image
 from emctask.motionview import MotionView
-from emctask.places import Modes
+from emctask.places import Calls, Modes
 from emctask.world import WorldModel
 from nml import clock
 from nml.channel import Channel
@@ -28,9 +29,11 @@ REPORT_S = 0.1  # host time between two reports when nothing changes
 class StatusWriter:
     """The EMC_STAT of one machine."""
 
-    def __init__(self, config: MachineConfig, channel: Channel) -> None:
+    def __init__(self, config: MachineConfig, channel: Channel, stacks: CallStacks) -> None:
         self._config = config
         self._channel = channel
+        self._stacks = stacks
+        self._calls: Calls = ()
         self.message = EMC_STAT()
         self._last = 0.0
         self._written = bytearray(EMC_STAT.SIZE)
@@ -67,8 +70,9 @@ class StatusWriter:
         stat.io.data[:] = io.data
         stat.debug = task.debug
         now = clock.host_now()
-        if image(stat) != self._written or now - self._last >= REPORT_S:
+        if image(stat) != self._written or self._stacks.changed(self._calls) or now - self._last >= REPORT_S:
             stat.task.heartbeat = (stat.task.heartbeat + 1) & 0xFFFFFFFF
+            self._stacks.write(self._calls, stat.task.heartbeat)
             self._channel.write(stat)
             self._written[:] = image(stat)
             self._last = now
@@ -118,7 +122,8 @@ class StatusWriter:
         stat.motion.traj.id = place.line if place else 0
         t.readLine = plan.interp.line if plan.active else 0
         block = place.block if place else task.sequencer.current_block if plan.active else None
-        t.callLevel = block.level if block else plan.interp.call_level
+        self._calls = block.calls if block else plan.calls
+        t.callLevel = len(self._calls)
         modes = (block.modes if block else None) or plan.modes
         self._fill_modes(modes, task.canon, t.motionLine if plan.runs_program else modes.line)
         if task.offsets != self._offsets:
@@ -141,5 +146,6 @@ class StatusWriter:
         task.activeSettings = (line, *canon.shown_settings(modes.settings)[1:])
 
     def close(self) -> None:
-        """Close the channel."""
+        """Close the channels."""
         self._channel.close()
+        self._stacks.close()

@@ -14,7 +14,8 @@ from typing import Any, Generic, NamedTuple, TypeVar, cast, overload
 
 from linuxcnc._connection import error, open_channel, pose_tuple
 from nml.channel import Channel
-from nml.emc import EMC_STAT, EMC_TOOL_TABLE
+from nml.emc import EMC_CALL_STACKS, EMC_STAT, EMC_TOOL_TABLE
+from nml.emc.calls import CALLS_BUFFER, stack_at
 from nml.errors import NmlError
 
 T = TypeVar("T")
@@ -66,6 +67,9 @@ JOINT_KEYS = {
     "max_hard_limit": "maxHardLimit",
     "override_limits": "overrideLimits",
 }
+
+CALL_KEYS = ("subname", "filename", "line")
+_call = attrgetter(*CALL_KEYS)
 
 AXIS_KEYS = {
     "velocity": "velocity",
@@ -251,6 +255,8 @@ class stat:
     def __init__(self) -> None:
         self._channel = open_channel("emcStatus")
         self._tools: Channel | None = None
+        self._calls: Channel | None = None
+        self._stacks = EMC_CALL_STACKS()
         self._tool_table: tuple[tool_result, ...] = (NO_TOOL,)
         self._tools_by_number: dict[int, dict[str, Any]] = {}
         self._message = EMC_STAT()
@@ -290,6 +296,17 @@ class stat:
         if isinstance(table, EMC_TOOL_TABLE):
             self._tool_table = _tool_table(table)
             self._tools_by_number = _tools_by_number(table)
+
+    @property
+    def call_stack(self) -> tuple[dict[str, Any], ...]:
+        """The calls that the executing move stands in, the outermost first: subname, filename and line of the call."""
+        if self._calls is None:
+            self._calls = open_channel(CALLS_BUFFER)
+        stacks = self._calls.peek()
+        if isinstance(stacks, EMC_CALL_STACKS):
+            self._stacks = stacks
+        stack = stack_at(self._stacks, self._message.task.heartbeat)
+        return tuple([dict(zip(CALL_KEYS, _call(one), strict=True)) for one in islice(stack.frames, stack.depth)])
 
     @property
     def axes(self) -> int:

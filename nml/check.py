@@ -29,6 +29,7 @@ MESSAGES: dict[str, tuple[type[Message], ...]] = {
     "toolCmd": (nml.emc.EMC_TOOL_SET_OFFSET, nml.emc.EMC_TOOL_LOAD_TOOL_TABLE),
     "toolSts": (nml.emc.EMC_IO_STAT,),
     "toolTable": (nml.emc.EMC_TOOL_TABLE,),
+    "callStacks": (nml.emc.EMC_CALL_STACKS,),
     "emcmotCommand": (nml.emc.emcmot.EMCMOT_COMMAND,),
     "emcmotStatus": (nml.emc.emcmot.EMCMOT_STATUS,),
     "emcmotError": (nml.emc.emcmot.EMCMOT_ERROR,),
@@ -37,7 +38,7 @@ MESSAGES: dict[str, tuple[type[Message], ...]] = {
 }
 """What each buffer of a controller must be able to carry."""
 
-_NATIVE = OWN_BUFFERS - {"toolTable", "emcOrders", "emcResults"}
+_NATIVE = OWN_BUFFERS - {"toolTable", "callStacks", "emcOrders", "emcResults"}
 """Buffers that the servo thread uses without Python: plain C layout in shared memory."""
 
 

@@ -432,6 +432,6 @@ BROADCAST_BUFFERS = frozenset({"emcError"})
 _LINKS = ("tcp", "udp", "stcp", "serial_port", "baud", "passwd")
 _WAY = ("type", "host", "timeout", "reconnect", "max_timeouts", "serial_port", "passwd")
 OWN_BUFFERS = frozenset(
-    {"emcmotCommand", "emcmotStatus", "emcmotError", "emcOrders", "emcResults", "toolTable"}
+    {"emcmotCommand", "emcmotStatus", "emcmotError", "emcOrders", "emcResults", "toolTable", "callStacks"}
 )
 """Buffers that LinuxCNC does not have; added to every NML file."""

@@ -22,6 +22,7 @@ class Interpreter:
     file: str
     block_text: str
     call_level: int
+    calls: tuple[tuple[str, str, int], ...]
     share_read: float
     modal_version: int
     program_units: int

@@ -21,6 +21,7 @@ from rs274ngc.modal cimport STEP_MOTION
 from rs274ngc.offsets cimport activate_origin, send_g92, send_origin
 from rs274ngc.params cimport get_named, get_numbered, named_exists, set_numbered
 from rs274ngc.plugin import plugin_of
+from rs274ngc.remapping cimport Pending
 from rs274ngc.remapping import go_on
 from rs274ngc.scan cimport read_unsigned, scan_words, strip
 from rs274ngc.settings import apply_settings
@@ -579,6 +580,20 @@ cdef class Interpreter:
     def call_level(self):
         """Depth of subroutine calls; a remapped code that waits for the machine counts as one."""
         return len(self.state.frames) - 1 + (self.state.resume is not None)
+
+    @property
+    def calls(self):
+        """The calls under way, the outermost first: (what is called, file of the call, line); as many as ``call_level``."""
+        cdef State s = self.state
+        cdef list found = []
+        cdef Frame caller, called
+        cdef Pending waiting
+        for caller, called in zip(s.frames, s.frames[1:]):
+            found.append((called.sub, caller.source.path if caller.source is not None else "", caller.line))
+        if s.resume is not None:
+            waiting = s.resume
+            found.append((waiting.sub or waiting.remap.name, self.file, waiting.line))
+        return tuple(found)
 
     @property
     def modal_version(self):

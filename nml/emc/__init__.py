@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from nml.emc.auxiliary import *
 from nml.emc.axis import *
+from nml.emc.calls import *
 from nml.emc.constants import *
 from nml.emc.coolant import *
 from nml.emc.io import *

@@ -11,7 +11,7 @@ from nml.fields import Field
 from nml.message import Message, Status, Struct, registry
 
 HEADERS = Path("/usr/include/linuxcnc/emc_nml.hh")
-NOT_IN_HEADERS = {"EMC_ORDER_NOTE", "EMC_ORDER_RESULT", "EMC_TOOL_TABLE"}
+NOT_IN_HEADERS = {"EMC_CALL_STACKS", "EMC_ORDER_NOTE", "EMC_ORDER_RESULT", "EMC_TOOL_TABLE"}
 HIDDEN = {"base_spindle"}
 """Members of a base class that C++ knows under the name of a member of the derived one."""
 TYPES = [

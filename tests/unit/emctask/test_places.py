@@ -9,7 +9,7 @@ CODES = (4, 10, -1, 170, 400, 210, 910, 940, 591, 430, 990, 640, -1, 970, 911, 8
 
 def test_ids_grow_by_one_and_are_found_until_the_machine_has_passed_them():
     places = Places()
-    block = Block("part.ngc", 0)
+    block = Block("part.ngc")
     first, second = places.new_id(Place(1, block)), places.new_id(Place(2, block))
     assert second == first + 1
     assert places.find(first).line == 1
@@ -20,10 +20,10 @@ def test_ids_grow_by_one_and_are_found_until_the_machine_has_passed_them():
 
 def test_ids_go_on_after_everything_was_forgotten():
     places = Places()
-    last = places.new_id(Place(1, Block("", 0)))
+    last = places.new_id(Place(1, Block("")))
     places.forget()
     assert places.find(last) is None
-    assert places.new_id(Place(5, Block("", 0))) == last + 1
+    assert places.new_id(Place(5, Block(""))) == last + 1
 
 
 def test_modes_come_back_as_one_block_without_motion_or_tool_length():

@@ -12,7 +12,7 @@ CANON = SimpleNamespace(config=SimpleNamespace(axis_mask=0b101), in_program_unit
 
 
 def block(**parameters: float) -> Block:
-    found = Block("part.ngc", 0)
+    found = Block("part.ngc")
     found.modes = Modes(CODES, (), (4.0, 600.0, 0.0, 0.0, 0.0))
     values = {ACTIVE_SYSTEM: 2.0} | {int(name[1:]): value for name, value in parameters.items()}
     found.offsets = tuple(values.get(number, 0.0) for number in STORED)

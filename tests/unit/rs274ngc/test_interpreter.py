@@ -259,3 +259,18 @@ def test_after_a_homing_line_nothing_is_read_before_it_is_done(run):
     interp = Interpreter(OfflineCanon())
     interp.init()
     assert interp.execute_mdi("g28.2 p-1") == INTERP_EXECUTE_FINISH
+
+
+def test_the_calls_under_way_are_named_with_the_places_of_the_calls(interp, tmp_path):
+    program, sub = tmp_path / "main.ngc", tmp_path / "deep.ngc"
+    program.write_text("o1 sub\n\no<deep> call\no1 endsub\ng0 x1\no1 call\nm2\n")
+    sub.write_text("o<deep> sub\ng0 x2\no<deep> endsub\n")
+    interp.state.subroutine_path = [str(tmp_path)]
+    interp.open(program)
+    seen = set()
+    while interp.read() == INTERP_OK and interp.execute() != INTERP_EXIT:
+        assert len(interp.calls) == interp.call_level
+        seen.add(interp.calls)
+    first = ("1", str(program), 6)
+    assert {(), (first,), (first, ("deep", str(program), 3))} <= seen
+    assert interp.calls == ()
