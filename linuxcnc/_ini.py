@@ -50,15 +50,19 @@ class ini:
         """The names of all sections in the order of the file."""
         return self._file.sections()
 
-    def getvariables(self, section: str | None = None) -> list[str]:
-        """The different keys of a section in the order of the file, or of all sections."""
-        sections = self._file.sections() if section is None else [section]
-        return [key for name in sections for key in self._file.keys(name)]
+    def getvariables(self, section: str | None = None) -> list[tuple[str, str]]:
+        """Key and value of each entry of a section, or of all; the keys as they first come in the file."""
+        return [
+            (key, value)
+            for name in (self._file.sections() if section is None else [section])
+            for key in self._file.keys(name)
+            for value in self._file.findall(name, key)
+        ]
 
-    def lineof(self, section: str, key: str, num: int = 1) -> tuple[str, int]:
-        """The file and the line where an entry stands; line 0 where there is none."""
+    def lineof(self, section: str, key: str, num: int = 1) -> tuple[str, int] | tuple[None, None]:
+        """The file and the line where an entry stands."""
         place = self._file.place(section, key, num)
-        return place.file, place.line
+        return (place.file, place.line) if place.line else (None, None)
 
     def getstring(self, section: str, key: str, num: int = 1, fallback: Any = None) -> Any:
         """The value as it stands there."""

@@ -39,12 +39,14 @@ def ini(tmp_path: Path) -> linuxcnc.ini:
 def test_sections_and_keys_are_listed_and_found(ini: linuxcnc.ini, tmp_path: Path) -> None:
     assert ini.getsections() == ["FIRST", "SECOND"]
     assert (ini.hassection("SECOND"), ini.hassection("THIRD")) == (True, False)
-    assert ini.getvariables("FIRST") == ["NAME", "LONG", "SWITCH", "COUNT", "SIZE"]
-    assert ini.getvariables()[-2:] == ["SIZE", "NAME"]
+    assert ini.getvariables("FIRST")[:4] == [
+        ("NAME", "mill"), ("LONG", "one two"), ("SWITCH", "TRUE"), ("SWITCH", "no"),
+    ]  # fmt: skip
+    assert ini.getvariables()[-2:] == [("SIZE", "large"), ("NAME", "lathe")]
     assert ini.getvariables("THIRD") == []
     assert (ini.hasvariable("FIRST", "NAME"), ini.hasvariable("SECOND", "SIZE")) == (True, False)
     assert ini.lineof("FIRST", "COUNT", 2) == (str(tmp_path / "machine.ini"), 10)
-    assert ini.lineof("FIRST", "OTHER") == (str(tmp_path / "machine.ini"), 0)
+    assert ini.lineof("FIRST", "OTHER") == (None, None)
 
 
 def test_texts_come_as_they_stand_there(ini: linuxcnc.ini) -> None:
