@@ -15,6 +15,7 @@ import linuxcnc
 from nml.channel import Channel
 from nml.codecs import xdr
 from nml.emc import (
+    EMC_CALL_STACKS,
     EMC_OPERATOR_ERROR,
     EMC_ORDER_NOTE,
     EMC_SPINDLE_ON,
@@ -175,6 +176,15 @@ def test_what_stock_programs_do_not_see_reaches_our_own(tcp: Ends) -> None:
     assert tcp.machine["emcCommand"].read().spindle == 2
     tcp.tool.write(EMC_TOOL_TABLE(last_index=7))
     assert tcp.client["toolTable"].peek().last_index == 7
+    calls = EMC_CALL_STACKS()
+    calls.stacks[1].depth = 1
+    calls.stacks[1].frames[0].subname = "outer"
+    with (
+        Channel(tcp.server.config, "callStacks", "emc") as task,
+        Channel(tcp.server.remote(), "callStacks", "xemc") as client,
+    ):
+        task.write(calls)
+        assert client.peek().stacks[1].frames[0].subname == "outer"
 
 
 def test_a_status_is_copied_into_the_reader_s_own_memory(tcp: Ends) -> None:
@@ -393,9 +403,7 @@ def test_nobody_can_put_words_into_the_mouth_of_others_from_elsewhere(tcp: Ends)
         channel.close()
 
 
-def test_the_client_module_says_when_the_machine_is_out_of_reach(
-    tcp: Ends, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_client_module_says_when_the_machine_is_out_of_reach(tcp: Ends, monkeypatch: pytest.MonkeyPatch) -> None:
     tcp.server.remote()
     monkeypatch.setattr(linuxcnc, "nmlfile", str(tcp.server.folder / "client.nml"))
     tcp.machine["emcStatus"].write(EMC_STAT(line=1))
