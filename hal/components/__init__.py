@@ -14,7 +14,7 @@ from hal.components.declare import DECLARED
 GROUPS = (
     "logic", "arithmetic", "filters", "timing", "select", "convert", "simulate", "control", "stepgen", "encoders",
     "pulses", "codes", "geometry", "shaping", "counting", "offsets", "supervise", "spindles", "trials", "raster",
-    "changers", "keypads", "motors", "thermocouples",
+    "changers", "keypads", "motors", "thermocouples", "plasmac",
 )  # fmt: skip
 MODULES = {
     "threads": ("threads", "load"),

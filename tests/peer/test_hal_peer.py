@@ -38,7 +38,7 @@ COMPONENTS = """
     tristate_bit tristate_float updown wcomp xor2
     anglejog axistest eoffset_per_angle message:names=m:messages=text moveoff:personality=2 sim_axis_hardware
     spindle_monitor steptest thc thcud gantry:personality=3 watchdog:num_inputs=2 xhc_hb04_util
-    modmath:mod_dir=2 ohmic threadtest
+    modmath:mod_dir=2 ohmic plasmac threadtest
 """
 NOT_COMPARED = (".time", ".tmax", ".threadbeat")  # times, and what 2.9 has not yet
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)

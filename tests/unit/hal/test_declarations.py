@@ -22,7 +22,7 @@ DECLARE = re.compile(r'^\s*declare\(f?"(\w+)".*?sizeof\((\w+)\)', re.M | re.S)
 def structs() -> dict[str, list[tuple[str, int]]]:
     """By struct: (member, length or 0) of the pins it begins with."""
     found = {}
-    for path in FOLDER.glob("*.pyx"):
+    for path in FOLDER.glob("*.p[xy][dx]"):
         text = path.read_text()
         lengths = dict(re.findall(r"^    ([A-Z_]+) = (\d+)$", text, re.M))
         for name, body in STRUCT.findall(text):
@@ -57,7 +57,7 @@ def plain(name: str) -> str:
 
 SPECIAL = {
     "mux_generic": "bb2,fs3", "matrix_kb": "2x3,4x8s", "bldc": "qi6,aH", "charge_pump": "1", "thc": "1", "thcud": "1",
-    "watchdog": "3",
+    "watchdog": "3", "plasmac": "1",
 }  # fmt: skip
 """What `loadrt` is given where two instances, or sizes of 2 and 1, are not possible."""
 LITERAL = sorted(name for name, declaration in DECLARED.items() if struct_of(declaration))

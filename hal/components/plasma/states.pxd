@@ -1,0 +1,5 @@
+"""See ``states.pyx``."""
+
+from hal.components.plasmac cimport Plasmac
+
+cdef void step(Plasmac* s) noexcept nogil
