@@ -284,6 +284,6 @@ cdef void lincurve(Lincurve* s, long period) noexcept nogil:
 
 declare("lincurve", "Straight lines through up to 16 points; personality= is how many", sizeof(Lincurve), [
     pin_in(FLOAT, "in"), pin_out(FLOAT, "out"), pin_io(FLOAT, "out-io", "the same, for I/O pins such as gains"),
-    param_rw(FLOAT, "x-val-{:02}", "rising", count=16, personal=lambda p: min(p or 2, 16)),
-    param_rw(FLOAT, "y-val-{:02}", count=16, personal=lambda p: min(p or 2, 16)),
+    param_rw(FLOAT, "x-val-{:02}", "rising", count=16, personal=lambda p: min(max(p, 2), 16)),
+    param_rw(FLOAT, "y-val-{:02}", count=16, personal=lambda p: min(max(p, 2), 16)),
 ], {"": <size_t>&lincurve}, personality=2)

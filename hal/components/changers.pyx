@@ -5,7 +5,7 @@ from libc.stdint cimport int32_t, uint8_t
 
 from hal.cell cimport hal_at as at, hal_pin
 
-from hal.components.declare import BIT, FLOAT, S32, declare, numbers, param_ro, pin_in, pin_io, pin_out
+from hal.components.declare import BIT, FLOAT, S32, U32, declare, numbers, param_ro, pin_in, pin_io, pin_out
 from nml.errors import HalError
 
 # ---- carousel ----
@@ -42,7 +42,7 @@ cdef struct Carousel:
     hal_pin sense[SENSES]
     hal_pin rev_pulse, fwd_dc, rev_dc, hold_dc, align_dc, decel_time, counts, scale, width, home_offset, index_enable
     hal_pin jog_fwd, jog_rev, motor_fwd, motor_rev, parity_error, current_position, motor_vel, homed, unhome
-    hal_pin state, homing, motor_dir
+    hal_pin state, homing, motor_dir, timer, debounce
     size_t personality
     double wait  # s, of what is timed
     int32_t home_counts, jog_target
@@ -222,18 +222,18 @@ cdef void carousel(Carousel* s, long period) noexcept nogil:
         at(s.homed).b = 0
     locate(s, &of)
     advance(s, &of, period * 1e-9)
+    at(s.timer).f = max(s.wait, 0.0)
     drive(s)
 
 
 ENCODINGS = {
     "gray": GRAY, "binary": BINARY, "bcd": BCD, "single": SINGLE, "index": INDEX, "edge": EDGE, "counts": COUNTS,
 }
-SENSES_OF = {"index": 2, "edge": 2, "counts": 1}
 
 
 def changers(dict args) -> list:
-    """A personality for each number of `pockets`; what another list lacks is as before it."""
-    pockets = numbers("carousel", args, "pockets")
+    """A personality for each number of `pockets`, one of 8 where none is given; what another list lacks is as before it."""
+    pockets = numbers("carousel", args, "pockets") if "pockets" in args else [8]
     if not 1 <= len(pockets) <= CHANGERS or not all(1 <= count <= 255 for count in pockets):
         given = args.get("pockets", "")
         raise HalError(f"carousel: pockets={given}: up to {CHANGERS} numbers from 1 to 255 would be right")
@@ -242,7 +242,7 @@ def changers(dict args) -> list:
         if word not in ENCODINGS:
             raise HalError(f"carousel: encoding={word}: {', '.join(ENCODINGS)} are known")
     lists = [pockets, [ENCODINGS[word] for word in encodings]]
-    for key, default, low, high in (("num_sense", 4, 1, SENSES), ("dir", 2, 1, 2), ("parity", 0, 0, 1)):
+    for key, default, low, high in (("num_sense", 4, 1, SENSES), ("dir", 2, 0, 2), ("parity", 0, 0, 1)):
         given = numbers("carousel", args, key) or [default]
         if not all(low <= number <= high for number in given):
             raise HalError(f"carousel: {key}={args[key]}: from {low} to {high} would be right")
@@ -250,7 +250,10 @@ def changers(dict args) -> list:
     made = []
     for i in range(len(pockets)):
         values = [values[min(i, len(values) - 1)] for values in lists]
-        values[2] = SENSES_OF.get(encodings[min(i, len(encodings) - 1)], values[2])
+        if values[1] == SINGLE:
+            values[2] = min(values[0], SENSES)
+        elif values[1] == INDEX or (values[1] == EDGE and values[2] < 2):
+            values[2] = 2
         made.append(sum(value << 8 * place for place, value in enumerate(values)))
     return made
 
@@ -277,6 +280,8 @@ declare("carousel", "Turns a tool changer's carousel to a pocket", sizeof(Carous
     pin_in(BIT, "unhome", "home again before the next move"),
     param_ro(S32, "state", "0 rest, 2 to pocket, 3 against stop, 5 7 8 aligning, 9 arrived, 11 homing, 20 jog"),
     param_ro(BIT, "homing"), param_ro(S32, "motor-dir", "1 forwards, -1 backwards"),
+    param_ro(FLOAT, "timer", "what is left of rev-pulse or decel-time, s"),
+    param_ro(U32, "debounce", "0: a position counts in the period in which it is read"),
 ], {"": <size_t>&carousel}, counted_by="pockets", sizes=True, decode=changers, takes_names=False, keep_personality=True,
    options=("encoding", "num_sense", "dir", "parity"))
 

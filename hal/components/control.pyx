@@ -6,7 +6,7 @@ from posix.time cimport CLOCK_MONOTONIC, clock_gettime, timespec
 
 from hal.cell cimport hal_at as at, hal_pin
 
-from hal.components.declare import BIT, FLOAT, S32, U32, declare, param_ro, pin_in, pin_io, pin_out
+from hal.components.declare import BIT, FLOAT, S32, U32, declare, pin_in, pin_io, pin_out
 
 
 # ---- pid ----
@@ -16,7 +16,7 @@ cdef struct Pid:
     hal_pin saturated_count, Pgain, Igain, Dgain, FF0, FF1, FF2, FF3, bias, deadband, maxerror, maxerrorI, maxerrorD
     hal_pin maxcmdD, maxcmdDD, maxcmdDDD, maxoutput, index_enable, error_previous_target
     hal_pin tune_mode, tune_start, tune_type, tune_cycles, tune_effort
-    hal_pin errorI, errorD, commandD, commandDD, commandDDD
+    hal_pin errorI, errorD, commandD, commandDD, commandDDD, ultimate_gain, ultimate_period
     double old_command, old_feedback, sum_error, cmd_d, cmd_dd, cmd_ddd, error_d
     uint8_t old_index
     int32_t limited  # 1 at the upper limit, -1 at the lower
@@ -89,6 +89,9 @@ cdef void finish_tuning(Pid* s) noexcept nogil:
     if amplitude <= 0.0 or period <= 0.0:
         return
     ultimate = 4.0 * fabs(s.effort) / (M_PI * amplitude)
+    if s.ultimate_gain != NULL:
+        at(s.ultimate_gain).f = ultimate
+        at(s.ultimate_period).f = period
     if at(s.tune_type).u == 0:
         at(s.Pgain).f = 0.6 * ultimate
         at(s.Igain).f = 1.2 * ultimate / period
@@ -197,9 +200,11 @@ declare("pid", "Proportional, integral and derivative controller with feed-forwa
     pin_in(BIT, "tune-mode", "tune instead of control"), pin_io(BIT, "tune-start", "begin; false again when done"),
     pin_io(U32, "tune-type", "0: P, I and D; 1: P, I and FF1"), pin_io(U32, "tune-cycles", "to average over", 50),
     pin_io(FLOAT, "tune-effort", "output of the relay, either way", 0.5),
-    param_ro(FLOAT, "errorI", personal=when_debug), param_ro(FLOAT, "errorD", personal=when_debug),
-    param_ro(FLOAT, "commandD", personal=when_debug), param_ro(FLOAT, "commandDD", personal=when_debug),
-    param_ro(FLOAT, "commandDDD", personal=when_debug),
+    pin_out(FLOAT, "errorI", personal=when_debug), pin_out(FLOAT, "errorD", personal=when_debug),
+    pin_out(FLOAT, "commandD", personal=when_debug), pin_out(FLOAT, "commandDD", personal=when_debug),
+    pin_out(FLOAT, "commandDDD", personal=when_debug),
+    pin_out(FLOAT, "ultimate-gain", "found by tuning", personal=when_debug),
+    pin_out(FLOAT, "ultimate-period", "found by tuning, s", personal=when_debug),
 ], {"do-pid-calcs": <size_t>&pid}, counted_by="num_chan", default_count=3, most=16, options=("debug",), decode=debug_of)
 
 

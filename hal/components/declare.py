@@ -104,6 +104,7 @@ class Declaration:
     most: int | None = None
     takes_names: bool = True
     uses_fp: bool | Callable[[int], bool] = True  # or by personality
+    integer: tuple[str, ...] = ()  # functions without floating point, where others have it
     separator: str = "."
     personality: int | None = None  # the default, for components whose pins depend on it
     sizes: bool = False  # `counted_by` takes a list, a personality for each instance
@@ -203,8 +204,8 @@ class Declaration:
         everyone.put(0, len(memories))
         for i, memory in enumerate(memories):
             everyone.put((i + 1) * WORD, memory.address)
-        for name, code in self.shared_functions():
-            comp.function(name, code, everyone.address, uses_fp=self._fp(0))
+        for suffix, (name, code) in zip(self.shared, self.shared_functions(), strict=True):
+            comp.function(name, code, everyone.address, uses_fp=self._fp(0) and suffix not in self.integer)
 
     def shared_functions(self) -> list[tuple[str, int]]:
         """Names and addresses of the functions for all instances."""

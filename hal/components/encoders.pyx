@@ -174,6 +174,7 @@ declare("encoder", "Software counter of quadrature encoders, or of one phase in 
     pin_io(FLOAT, "position-scale", "counts per unit", 1.0), pin_io(BIT, "x4-mode", "count all four edges", True),
     pin_io(BIT, "counter-mode", "count rising edges of phase-A"), pin_in(S32, "missing-teeth", "teeth that make the index gap"),
 ], {}, shared={"update-counters": <size_t>&update_counters, "capture-position": <size_t>&capture_position},
+   integer=("update-counters",),
    counted_by="num_chan", default_count=3, most=MAX_CHANNELS)
 
 
@@ -224,7 +225,8 @@ declare("counter", "Counter of rising edges; encoder in counter mode does the sa
     pin_in(BIT, "phase-A"), pin_in(BIT, "phase-Z", "index pulse"), pin_io(BIT, "index-enable"), pin_in(BIT, "reset"),
     pin_out(S32, "rawcounts"), pin_out(S32, "counts"), pin_out(FLOAT, "position"), pin_out(FLOAT, "velocity", "units per s"),
     pin_io(FLOAT, "position-scale", "counts per unit", 1.0),
-], {}, shared={"update-counters": <size_t>&count_edges, "capture-position": <size_t>&capture_counts},
+], {}, shared={"update-counters": <size_t>&count_edges, "capture-position": <size_t>&capture_counts}, integer=("update-counters",),
+  
    counted_by="num_chan", most=MAX_CHANNELS, takes_names=False)
 
 
@@ -274,7 +276,8 @@ declare("encoder_ratio", "Electronic gear: error of a slave encoder against a ma
     pin_in(BIT, "enable", "false: error is the slave's position"), pin_out(FLOAT, "error", "revolutions of the slave"),
     pin_io(U32, "master-ppr", "counts per revolution: all edges of both phases"), pin_io(U32, "slave-ppr"), pin_io(U32, "master-teeth"),
     pin_io(U32, "slave-teeth"),
-], {}, shared={"sample": <size_t>&sample_ratio, "update": <size_t>&update_ratio}, counted_by="num_chan", most=MAX_CHANNELS)
+], {}, shared={"sample": <size_t>&sample_ratio, "update": <size_t>&update_ratio}, integer=("sample",),
+   counted_by="num_chan", most=MAX_CHANNELS)
 
 
 # ---- sim_encoder ----
@@ -322,5 +325,5 @@ declare("sim_encoder", "Simulated quadrature encoder with index", sizeof(SimEnco
     pin_out(BIT, "phase-A"), pin_out(BIT, "phase-B"), pin_out(BIT, "phase-Z", "once a revolution"),
     pin_io(U32, "ppr", "pulses per revolution, four counts each", 100), pin_in(FLOAT, "speed", "speed / scale is in rev/s"),
     pin_io(FLOAT, "scale", "", 1.0), pin_in(S32, "rawcounts", "counts made"),
-], {}, shared={"make-pulses": <size_t>&sim_make_pulses, "update-speed": <size_t>&sim_update_speed},
+], {}, shared={"make-pulses": <size_t>&sim_make_pulses, "update-speed": <size_t>&sim_update_speed}, integer=("make-pulses",),
    counted_by="num_chan", most=MAX_CHANNELS)

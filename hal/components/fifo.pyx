@@ -134,7 +134,7 @@ def load_sampler(host, dict args):
         s.curr_depth = pin_of(comp, f"{name}.curr-depth", S32, OUT)
         s.overruns = pin_of(comp, f"{name}.overruns", S32, IO)
         s.sample_num = pin_of(comp, f"{name}.sample-num", S32, IO)
-        comp.function(name, <size_t>&sample, address)
+        comp.function(name, <size_t>&sample, address, uses_fp="f" in types)
     comp.ready()
 
 
@@ -161,7 +161,7 @@ def load_streamer(host, dict args):
         s.underruns = pin_of(comp, f"{name}.underruns", S32, IO)
         s.clock = pin_of(comp, f"{name}.clock", BIT, IN)
         s.clock_mode = pin_of(comp, f"{name}.clock-mode", S32, IN)
-        comp.function(name, <size_t>&stream, address)
+        comp.function(name, <size_t>&stream, address, uses_fp="f" in types)
     comp.ready()
 
 

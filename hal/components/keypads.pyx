@@ -106,7 +106,7 @@ def scanned(int p) -> int:
 declare("matrix_kb", "Keys in rows and columns as pins; config=4x8,2x3s makes one of four rows of eight keys whose events come "
         "in by `keycode`, and one of two rows of three keys that scans them itself", sizeof(MatrixKb), [
     pin_in(U32, "keycode", "0xC0 and the key's number when it is pressed, 0x80 and its number when it is released; with s an "
-           "output", dir_of=lambda p: OUT if scanned(p) else IN, default_of=lambda i, p: NOTHING if scanned(p) else 0),
+           "output", dir_of=lambda p: OUT if scanned(p) else IN),
     param_rw(U32, "key_rollover", "keys that may be held at a time; with s", USUAL_ROLLOVER, personal=scanned),
     param_rw(BIT, "negative-logic", "a row is driven, and a key felt, as false; with s", True, personal=scanned),
     pin_out(BIT, "row-{:02}-out", "drives a row; with s", count=LINES, personal=lambda p: rows_of(p) * scanned(p)),
@@ -114,4 +114,4 @@ declare("matrix_kb", "Keys in rows and columns as pins; config=4x8,2x3s makes on
     pin_out(BIT, "key.r{row:x}c{column:x}", "true while the key is held", count=KEYS,
             personal=lambda p: rows_of(p) * columns_of(p), columns=columns_of),
 ], {"": <size_t>&matrix_kb}, counted_by="config", sizes=True, decode=sizes_of, keep_personality=True, instance="matrix_kb.{}",
-   names_beside=True, uses_fp=False)
+   names_beside=True)

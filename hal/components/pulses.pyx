@@ -151,7 +151,7 @@ declare("pwmgen", "Pulse width or density modulation in software; output_type=0,
     pin_io(FLOAT, "max-dc", "", 1.0), pin_out(FLOAT, "curr-dc", "duty cycle now, -1 to 1"),
     pin_out(BIT, "pwm", personal=lambda p: int(p < 2)), pin_out(BIT, "dir", "true backwards", personal=lambda p: int(p == 1)),
     pin_out(BIT, "up", personal=lambda p: int(p == 2)), pin_out(BIT, "down", personal=lambda p: int(p == 2)),
-], {}, shared={"make-pulses": <size_t>&make_pulses, "update": <size_t>&update}, counted_by="output_type", sizes=True,
+], {}, shared={"make-pulses": <size_t>&make_pulses, "update": <size_t>&update}, integer=("make-pulses",), counted_by="output_type", sizes=True,
    most=MAX_CHANNELS, decode=decode)
 
 

@@ -76,9 +76,9 @@ cdef void spindle(Spindle* s, long period) noexcept nogil:
     at(s.output).f = 0.0 if speed == 0.0 else (fabs(speed) + at(s.offset[gear]).f) * at(s.scale[gear]).f
 
 
-def gear_in(int type_, str name, str doc = "", default = 0):
+def gear_in(int type_, str name, str doc = "", default = 0, **more):
     """An input for each gear."""
-    return pin_in(type_, name, doc, default, count=GEARS, personal=lambda p: min(max(p, 1), GEARS))
+    return pin_in(type_, name, doc, default, count=GEARS, personal=lambda p: min(max(p, 1), GEARS), **more)
 
 
 def numgears(dict args) -> list:
@@ -96,8 +96,9 @@ declare("spindle", "Speed of a spindle with ramps, gears and separate directions
     pin_out(BIT, "limited", "the command is beyond min or max"),
     gear_in(FLOAT, "scale.{}", "of output", 1.0), gear_in(FLOAT, "min.{}", "RPM"), gear_in(FLOAT, "max.{}", "RPM; 0 is no limit"),
     gear_in(FLOAT, "accel.{}", "RPM per s; with an encoder RPM above the actual speed"), gear_in(FLOAT, "decel.{}", "the same downwards"),
-    gear_in(FLOAT, "speed-tolerance.{}", "RPM, for at-speed"), gear_in(FLOAT, "zero-tolerance.{}", "RPM, for zero-speed"),
-    gear_in(FLOAT, "offset.{}", "RPM, of output"), gear_in(BIT, "select.{}", "take this gear"),
+    gear_in(FLOAT, "speed-tolerance.{}", "RPM, for at-speed", 20.0),
+    gear_in(FLOAT, "zero-tolerance.{}", "RPM, for zero-speed", 20.0), gear_in(FLOAT, "offset.{}", "RPM, of output"),
+    gear_in(BIT, "select.{}", "take this gear", default_of=lambda i, gears: gears <= 1),
 ], {"": <size_t>&spindle}, options=("numgears",), decode=numgears, keep_personality=True)
 
 

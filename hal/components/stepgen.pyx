@@ -269,7 +269,7 @@ declare("stepgen", "Step pulses in software. step_type=0,... is 0 step/dir, 1 up
     param_rw(U32, "dirsetup", "from dir to step, ns", 1, personal=only(0)),
     param_rw(U32, "dirhold", "from step to dir, ns", 1, personal=only(0)),
     param_rw(U32, "dirdelay", "between steps of opposite directions, ns", 1, personal=lambda p: int(p & 0xFF != 0)),
-], {}, shared={"make-pulses": <size_t>&make_pulses, "update-freq": <size_t>&update_freq,
+], {}, integer=("make-pulses",), shared={"make-pulses": <size_t>&make_pulses, "update-freq": <size_t>&update_freq,
                "capture-position": <size_t>&capture_position},
    counted_by="step_type", sizes=True, most=MAX_CHANNELS, options=("ctrl_type", "user_step_type"), decode=decode,
    keep_personality=True, set_up=set_up)

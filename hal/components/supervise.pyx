@@ -74,7 +74,7 @@ declare("watchdog", "Watches that inputs keep changing", sizeof(Watchdog), [
     pin_in(BIT, "enable-in", "false: ok-out is false; its rising edge begins again after a timeout"),
     pin_out(BIT, "ok-out", "enabled, and no input was late"),
     param_rw(FLOAT, "timeout-{}", "s", count=INPUTS, personal=lambda p: p),
-], {}, shared={"process": <size_t>&watchdog_process, "set-timeouts": <size_t>&watchdog_set_timeouts},
+], {}, integer=("process",), shared={"process": <size_t>&watchdog_process, "set-timeouts": <size_t>&watchdog_set_timeouts},
    counted_by="num_inputs", sizes=True, most=1, takes_names=False, decode=watched, keep_personality=True, instance="watchdog")
 
 

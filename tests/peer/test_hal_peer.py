@@ -32,13 +32,15 @@ COMPONENTS = """
     counter:num_chan=1 dbounce ddt deadzone debounce:cfg=2 div2 edge encoder:num_chan=1 encoder_ratio:num_chan=1
     estop_latch flipflop hypot ilowpass integ invert limit1 limit2 limit3 lincurve:personality=3
     logic:personality=0x306 lowpass lut5 maj3 match8 minmax mult2 mux16 mux2 mux4 mux8 near not offset oneshot or2
-    pid:num_chan=1 pwmgen:output_type=0,1,2 sample_hold sampler:cfg=fbsu:depth=9 scale select8 siggen:num_chan=1
+    pid:num_chan=1:debug=1 pwmgen:output_type=0,1,2 sample_hold sampler:cfg=fbsu:depth=9 scale select8 siggen:num_chan=1
     sim_encoder:num_chan=1 sim_home_switch sim_parport sim_spindle stepgen:step_type=0,1,2,5,13
     streamer:cfg=fbsu:depth=9 sum2 supply:num_chan=1 time timedelay timedelta toggle toggle2nist tof ton tp
     tristate_bit tristate_float updown wcomp xor2
     anglejog axistest eoffset_per_angle message:names=m:messages=text moveoff:personality=2 sim_axis_hardware
     spindle_monitor steptest thc thcud gantry:personality=3 watchdog:num_inputs=2 xhc_hb04_util
-    modmath:mod_dir=2 ohmic plasmac threadtest
+    modmath:mod_dir=2 ohmic plasmac threadtest spindle:count=2
+    carousel:pockets=5,6,8,4:encoding=single,edge,counts,gray matrix_kb:config=2x3,4x4s max31855:personality=2
+    bldc:cfg=qi6,aH
 """
 NOT_COMPARED = (".time", ".tmax", ".threadbeat")  # times, and what 2.9 has not yet
 IDENTITY = re.compile(r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)$", re.M)

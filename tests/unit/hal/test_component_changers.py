@@ -138,9 +138,9 @@ def test_lists_make_several_and_the_last_value_goes_on(bench: Bench) -> None:
 @pytest.mark.parametrize(
     ("words", "what"),
     [
-        ([], "pockets=: up to 8 numbers from 1 to 255 would be right"),
+        (["pockets="], "pockets=: up to 8 numbers from 1 to 255 would be right"),
         (["pockets=4", "encoding=morse"], "encoding=morse: gray, binary, bcd"),
-        (["pockets=4", "dir=3"], "dir=3: from 1 to 2 would be right"),
+        (["pockets=4", "dir=3"], "dir=3: from 0 to 2 would be right"),
     ],
 )
 def test_wrong_parameters_are_named(bench: Bench, words: list[str], what: str) -> None:
