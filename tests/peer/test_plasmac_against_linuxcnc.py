@@ -70,6 +70,10 @@ SCENARIOS = {
     "all gains": job(*CUTTING, *volts(*VOLTS), given={**NO_LOCK, "pid-i-gain": 30, "pid-d-gain": 0.02}),
     "puddle jump and a pause at the end": job(*PIERCED, *END, given={
         "puddle-jump-height": 80, "puddle-jump-delay": 0.0207, "pause-at-end": 0.0555, "pierce-delay": 0.0123}),
+    "a pause at the end of a cut that did not begin": job(
+        (150, {"cutting-start": 1}), (200, NO_CUT), given={"pause-at-end": 0.05, "cornerlock-enable": 0}),
+    "a puddle jump to nowhere": job(*PIERCED, *END, given={"puddle-jump-delay": 0.02, "cornerlock-enable": 0}),
+    "a puddle jump without a delay": job(*PIERCED, *END, given={"puddle-jump-height": 150}),
     "a dry run": job(*PIERCED, *END, given={"torch-enable": 0}),
     "no arc is wanted": job((340, {"cutting-start": 1}), (110, AT_SPEED), *END, given={"ignore-arc-ok-0": 1}),
     "a mesh": job(*PIERCED, (50, {"arc-voltage-in": 0}), *END, given={"mesh-enable": 1}),

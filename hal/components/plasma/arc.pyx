@@ -18,6 +18,9 @@ cdef void read_voltage(Plasmac* s) noexcept nogil:
     volts = floor(s.volts * 1000.0 + 0.5) / 1000.0
     at(s.arc_voltage_out).f = 0.0 if fabs(volts) < at(s.zero_window).f else volts
 
+cdef bint arc_ignored(Plasmac* s) noexcept nogil:
+    return at(s.ignore_arc_ok_0).b or at(s.ignore_arc_ok_1).b
+
 cdef void sense_voltage(Plasmac* s) noexcept nogil:
     """Whether there is an arc by the voltage, whenever that was steady for so many readings; none if it is too high."""
     cdef double volts = at(s.arc_voltage_out).f
@@ -25,7 +28,7 @@ cdef void sense_voltage(Plasmac* s) noexcept nogil:
         s.ok_volts = volts
         s.ok_readings = 0
     s.ok_readings = min(s.ok_readings + 1, max(at(s.ok_sample_counts).s, 1))
-    if s.arc_ok and at(s.mesh_enable).b:
+    if s.arc_ok and (at(s.mesh_enable).b or arc_ignored(s)):
         return
     if volts > at(s.arc_ok_high).f:
         s.arc_ok = 0
@@ -57,9 +60,6 @@ cdef void read_arc(Plasmac* s) noexcept nogil:
         at(s.arc_ok_out).b = s.arc_ok
     elif is_lost(s):
         at(s.arc_ok_out).b = 0
-
-cdef bint arc_ignored(Plasmac* s) noexcept nogil:
-    return at(s.ignore_arc_ok_0).b or at(s.ignore_arc_ok_1).b
 
 cdef void debounce_ohmic_sense(Plasmac* s) noexcept nogil:
     """A relay's answer that was the same for more periods than the delay."""

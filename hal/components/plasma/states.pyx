@@ -258,10 +258,12 @@ cdef void await_arc(Plasmac* s) noexcept nogil:
         s.state = TORCH_ON
 
 cdef void pierce(Plasmac* s) noexcept nogil:
+    cdef bint jump = at(s.puddle_jump_height).f > 0.0 or at(s.puddle_jump_delay).f > 0.0
     if not over(&s.timer, s.dt):
         return
-    if at(s.puddle_jump_height).f > 0.0 and not at(s.cut_recovering).b:
-        s.z_target = above(s, at(s.pierce_height).f * at(s.puddle_jump_height).f * 0.01)
+    if jump and not at(s.cut_recovering).b:
+        if at(s.puddle_jump_height).f > 0.0:
+            s.z_target = above(s, at(s.pierce_height).f * at(s.puddle_jump_height).f * 0.01)
         s.timer = at(s.puddle_jump_delay).f
         s.state = PUDDLE_JUMP
     else:

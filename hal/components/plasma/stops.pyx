@@ -17,6 +17,7 @@ cdef void retract(Plasmac* s, int why) noexcept nogil:
     """To the height from which the program came; the step of this period begins it."""
     at(s.torch_on).b = 0
     at(s.feed_hold).b = 1
+    s.cut_well = s.cut_well and why != CUT_HELD
     s.stop = why
     s.state = MAX_HEIGHT
 
@@ -57,13 +58,12 @@ cdef void see_stops(Plasmac* s) noexcept nogil:
     if cutting(s) and at(s.program_is_paused).b:
         retract(s, CUT_HELD)
     elif arc_lost(s):
-        s.cut_well = 0
         hold(s)
     elif at(s.sensor_active).b and not at(s.program_is_idle).b and (
             s.state == IDLE or PIERCE_HEIGHT <= s.state <= CUT_MODE_2 or (cutting(s) and at(s.breakaway).b)):
         s.held = 1
         hold(s)
-    if s.state != CUT_MODE_01 and s.state != CUT_MODE_2:
+    if not CUT_MODE_01 <= s.state <= PAUSE_AT_END:
         at(s.cornerlock_is_locked).b = 0
 
 cdef void tell_jogging(Plasmac* s) noexcept nogil:
@@ -82,7 +82,7 @@ cdef void see_end_of_cut(Plasmac* s) noexcept nogil:
         s.state = PROBE_TEST
         return
     s.stop = CUT_ENDED
-    if s.state >= CUT_MODE_01 and at(s.pause_at_end).f > 0.0:
+    if at(s.pause_at_end).f > 0.0:
         s.timer = at(s.pause_at_end).f
         s.state = PAUSE_AT_END
     else:

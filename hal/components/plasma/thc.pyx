@@ -135,11 +135,13 @@ cdef void control_height(Plasmac* s) noexcept nogil:
 
 cdef void watch_corner(Plasmac* s) noexcept nogil:
     cdef double lowest = at(s.requested_feed_rate).f * at(s.cornerlock_threshold).f * 0.01
-    if not at(s.cornerlock_enable).b:
-        at(s.cornerlock_is_locked).b = 0
-    elif arc_ignored(s) or at(s.mesh_enable).b or not at(s.arc_ok_out).b:
+    if arc_ignored(s) or at(s.mesh_enable).b or not at(s.arc_ok_out).b:
         return
-    elif at(s.current_feed_rate).f < lowest or (s.state == CUT_MODE_01 and not s.has_target):
+    if s.state == CUT_MODE_01 and not s.has_target:
+        at(s.cornerlock_is_locked).b = 1
+    elif not at(s.cornerlock_enable).b:
+        at(s.cornerlock_is_locked).b = 0
+    elif at(s.current_feed_rate).f < lowest:
         at(s.cornerlock_is_locked).b = 1
     elif at_full_speed(s):
         at(s.cornerlock_is_locked).b = 0
