@@ -10,23 +10,22 @@ from libc.math cimport fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 
 from emcmot.tp.corner cimport blend_position
+from emcmot.tp.cubic cimport cubic_position
 from emcmot.tp.follow cimport count_way
 from emcmot.tp.geometry cimport position
-from emcmot.tp.jerk cimport forget_stretches, move_smoothly
+from emcmot.tp.interior cimport forget_plan
+from emcmot.tp.jerk cimport move_smoothly
 from emcmot.tp.limits cimport acceleration_range, hardest_stop
-from emcmot.tp.model cimport AXES, CHAIN_NONE, SPAN_BLEND, SPAN_LINE, TAP_NONE, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, extend, refresh_some, sweep_caps
+from emcmot.tp.model cimport AXES, CHAIN_NONE, SPAN_BLEND, SPAN_CUBIC, SPAN_LINE, TAP_NONE, Segment, Span, TpState
+from emcmot.tp.path cimport exit_limit, extend, look_ahead, sweep_caps
 from emcmot.tp.progress cimport holding, next_span, reached, run_tap, target_w, waiting
 from emcmot.tp.reverse cimport turn_forward
-from emcmot.tp.smooth cimport command_planned, command_smoothed
+from emcmot.tp.smooth cimport extend_smoothly, forget_chain
 from emcmot.tp.tap cimport at_rest
 from emcmot.tp.tp cimport TP_TAP
 
 cdef enum:
     PHASES_PER_PERIOD = 5000    # bound of the work of one period
-    SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
-    REFRESH_SHARE = 16           # longer ones: when this share of the path is new
-    FRESH_SPANS = 256            # so many are looked at without need
     LOOKED_AT_PER_PERIOD = 160   # spans
 
 cdef double SAME_SPEED = 1e-12   # relative
@@ -56,27 +55,21 @@ cdef void advance(TpState* tp) noexcept nogil:
         before[i] = tp.pos[i]
     tp.lead_known = 0
     tp.look_left = LOOKED_AT_PER_PERIOD
-    if not tp.reversing:
+    if not tp.reversing and tp.smooth:
+        extend_smoothly(tp)
+    elif not tp.reversing:
         extend(tp)
-    if tp.smooth:
-        _advance_smoothly(tp)
-    elif tp.active < tp.span_tail:
-        sweep_caps(tp)
-        _move(tp, tp.dt)
+    if tp.active < tp.span_tail:
+        if tp.smooth:
+            move_smoothly(tp)
+        else:
+            sweep_caps(tp)
+            _move(tp, tp.dt)
         _place(tp)
-        command_planned(tp)
     if tp.aborting and at_rest(tp):
         _drop_queue(tp)
     for i in range(AXES):
         tp.vel[i] = (tp.pos[i] - before[i]) / tp.dt
-
-
-cdef void _advance_smoothly(TpState* tp) noexcept nogil:
-    if tp.active < tp.span_tail:
-        move_smoothly(tp)
-        _place(tp)
-    if tp.lag > 0 or tp.active < tp.span_tail:
-        command_smoothed(tp)
 
 
 cdef void _drop_queue(TpState* tp) noexcept nogil:
@@ -89,43 +82,36 @@ cdef void _drop_queue(TpState* tp) noexcept nogil:
     tp.corner_known = 0
     tp.looking = -1
     tp.body_end = tp.body_goal = 0.0
+    forget_chain(tp)
     tp.aborting = tp.paused = tp.stepping = 0
     tp.chain = CHAIN_NONE
     tp.tap_phase = TAP_NONE
     tp.u = tp.w = 0.0
-    forget_stretches(tp)
+    tp.hungry = 1
+    forget_plan(tp)
     for i in range(AXES):
         tp.goal[i] = tp.pos[i]
 
 
 cdef void _place(TpState* tp) noexcept nogil:
-    """Find the planned position."""
+    """Find the commanded position."""
     cdef const Span* span
     cdef const Segment* seg
     cdef int i
     if tp.active >= tp.span_tail:
-        position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.planned)
+        position(_seg(tp, tp.seg_built - 1), _seg(tp, tp.seg_built - 1).length, tp.pos)
         return
     span = _span(tp, tp.active)
     seg = _seg(tp, span.seg)
     if seg.kind == TP_TAP and tp.tap_phase != TAP_NONE:
         for i in range(AXES):
-            tp.planned[i] = seg.start[i] + seg.rate[i] * tp.tap_s
+            tp.pos[i] = seg.start[i] + seg.rate[i] * tp.tap_s
+    elif span.kind == SPAN_CUBIC:
+        cubic_position(span, tp.u, tp.pos)
     elif span.kind == SPAN_BLEND:
-        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, reached(tp, span), tp.planned)
+        blend_position(_seg(tp, span.seg - 1), _seg(tp, span.seg), span.trim, reached(tp, span), tp.pos)
     else:
-        position(_seg(tp, span.seg), reached(tp, span), tp.planned)
-
-
-cdef void _look_ahead(TpState* tp) noexcept nogil:
-    """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it.
-
-    A path that is known far ahead asks for nothing, and grows; it is refreshed in pieces that a period can bear.
-    """
-    cdef int64_t fresh = tp.span_tail - tp.new_spans, known = tp.span_tail - tp.active
-    cdef int wanted = tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known)
-    if tp.looking >= 0 or fresh >= FRESH_SPANS or (fresh > 0 and wanted):
-        refresh_some(tp)
+        position(_seg(tp, span.seg), reached(tp, span), tp.pos)
 
 
 cdef void _move(TpState* tp, double left) noexcept nogil:
@@ -145,7 +131,7 @@ cdef void _move(TpState* tp, double left) noexcept nogil:
             if not next_span(tp, span):
                 return
             continue
-        _look_ahead(tp)
+        look_ahead(tp)
         phase = _line_phase(tp, span) if span.kind == SPAN_LINE else _curve_phase(tp, span)
         if tp.w == 0.0 and phase.acceleration <= 0.0:
             return

@@ -12,7 +12,6 @@ from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 from emcmot.tp.follow cimport follows_position
 from emcmot.tp.geometry cimport derivatives, position
 from emcmot.tp.model cimport AXES, Segment, TpState
-from emcmot.tp.smooth cimport blend_share
 from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND, TP_TERM_STOP
 
 cdef enum:
@@ -20,7 +19,7 @@ cdef enum:
     ARC_BLEND_SPANS = 8
     PROBES = 8                   # parts of a blend with an arc between which its distance from the moves is measured
 
-cdef double TANGENT = 1e-11          # difference of unit tangents that needs no blend
+TANGENT = 1e-11                      # difference of unit tangents that needs no blend
 cdef double EXACT_KINK = 0.02        # the same in exact-path mode: sharper corners are stops
 cdef double EXACT_TOLERANCE = 1e-5   # lu; rounding of the corner's coordinates that exact-path mode may use
 cdef double SMALLEST_TRIM = 1e-10    # lu
@@ -50,24 +49,15 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     cdef int i
     derivatives(a, a.length, t1, unused)
     derivatives(b, 0.0, t2, unused)
-    corner.ratio = _ratio(a, b, t1, t2)
+    corner.ratio = corner_ratio(a, b, t1, t2)
     corner.trim = 0.0
     for i in range(AXES):
         jump[i] = corner.ratio * t2[i] - t1[i]
     sharpness = _length(jump)
-    corner.stop = sharpness > TANGENT
-    if a.term == TP_TERM_STOP or a.motion_type >= MOTION_TOOL_CHANGE or b.motion_type >= MOTION_TOOL_CHANGE:
-        corner.stop = 1
+    corner.stop = must_stop(a, b) or sharpness > TANGENT
+    if must_stop(a, b) or not corner.stop:
         return corner
-    if b.wait_spindles or b.indexer >= 0 or (follows_position(b) and not follows_position(a)):
-        corner.stop = 1
-        return corner
-    if a.kind == TP_TAP or b.kind == TP_TAP or (tp.smooth and a.unit != b.unit):
-        corner.stop = 1
-        return corner
-    if not corner.stop:
-        return corner
-    tolerance = _tolerance(a, b, sharpness) * blend_share(tp)
+    tolerance = corner_tolerance(a, b, sharpness)
     if tolerance == 0.0:
         return corner
     wanted = _trim_for_speed(tp, a, b, corner.ratio, jump)
@@ -85,7 +75,16 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     return corner
 
 
-cdef double _ratio(const Segment* a, const Segment* b, const double* t1, const double* t2) noexcept nogil:
+cdef int must_stop(const Segment* a, const Segment* b) noexcept nogil:
+    """Whether the program wants the machine to rest between two moves."""
+    if a.term == TP_TERM_STOP or a.motion_type >= MOTION_TOOL_CHANGE or b.motion_type >= MOTION_TOOL_CHANGE:
+        return 1
+    if b.wait_spindles or b.indexer >= 0 or (follows_position(b) and not follows_position(a)):
+        return 1
+    return a.kind == TP_TAP or b.kind == TP_TAP
+
+
+cdef double corner_ratio(const Segment* a, const Segment* b, const double* t1, const double* t2) noexcept nogil:
     """du of `b` per du of `a`: 1 where both count the same length, else what keeps tangents or the feeds in step."""
     cdef double cross = 0.0, square1 = 0.0, square2 = 0.0
     cdef int i
@@ -100,7 +99,7 @@ cdef double _ratio(const Segment* a, const Segment* b, const double* t1, const d
     return b.vel / a.vel
 
 
-cdef double _tolerance(const Segment* a, const Segment* b, double sharpness) noexcept nogil:
+cdef double corner_tolerance(const Segment* a, const Segment* b, double sharpness) noexcept nogil:
     """Deviation that the corner may have; infinite for G64 without P, 0 for a stop."""
     if a.term != TP_TERM_BLEND:
         return EXACT_TOLERANCE if sharpness < EXACT_KINK else 0.0

@@ -2,7 +2,8 @@
 
 from emcmot.tp.model cimport Segment, Span, TpState
 
-ctypedef struct Curve:       # a segment, or the blend between `before` and `seg`
+ctypedef struct Curve:       # a segment, the blend between `before` and `seg`, or a cubic span
+    const Span* cubic        # NULL: none
     const Segment* before    # NULL: the segment alone
     const Segment* seg
     double trim

@@ -9,6 +9,7 @@ Called by path for every span that it builds.
 from libc.math cimport fabs, fmax, fmin
 
 from emcmot.tp.corner cimport blend_position
+from emcmot.tp.cubic cimport cubic_position
 from emcmot.tp.geometry cimport position
 from emcmot.tp.model cimport AXES, Span, TpState
 from emcmot.tp.joint_map cimport TP_JOINTS
@@ -25,7 +26,9 @@ ctypedef struct Rates:               # derivatives of the joints by u
 
 cdef inline int _joints(const TpState* tp, const Curve* curve, double u, double* out) noexcept nogil:
     cdef double pose[AXES]
-    if curve.before != NULL:
+    if curve.cubic != NULL:
+        cubic_position(curve.cubic, u, pose)
+    elif curve.before != NULL:
         blend_position(curve.before, curve.seg, curve.trim, u, pose)
     else:
         position(curve.seg, u, pose)
@@ -54,15 +57,28 @@ cdef int _rates(const TpState* tp, const Curve* curve, double u, Rates* rates) n
     return 1
 
 
+cdef void _reach_ends(const TpState* tp, const Curve* curve, Rates* start, Rates* end) noexcept nogil:
+    """Take the second derivatives from where they were found to the ends of the curve: third ones come from their difference."""
+    cdef double step = fmin(STEP, SHARE_OF_CURVE * curve.length), more
+    cdef int k
+    for k in range(tp.joints):
+        more = (end.second[k] - start.second[k]) * step / (curve.length - 2.0 * step)
+        start.second[k] -= more
+        end.second[k] += more
+
+
 cdef void add_joints(const TpState* tp, const Curve* curve, Span* span) noexcept nogil:
     """Add the joints' rows to a span that has those of the axes; where there is no solution, motion says so when it is there."""
     cdef Rates start, middle, end
     cdef double miss = 0.0, rate, w, a = span.acc, limit
     cdef int k, n = span.n
-    if not _rates(tp, curve, span.u0, &start) or not _rates(tp, curve, span.u0 + 0.5 * span.h, &middle):
+    cdef double u0 = 0.0 if curve.cubic != NULL else span.u0
+    if not _rates(tp, curve, u0, &start) or not _rates(tp, curve, u0 + 0.5 * span.h, &middle):
         return
-    if not _rates(tp, curve, span.u0 + span.h, &end):
+    if not _rates(tp, curve, u0 + span.h, &end):
         return
+    if curve.cubic != NULL:
+        _reach_ends(tp, curve, &start, &end)
     for k in range(tp.joints):
         rate = fmax(fabs(start.first[k]), fmax(fabs(middle.first[k]), fabs(end.first[k])))
         if rate == 0.0:

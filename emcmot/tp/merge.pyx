@@ -16,7 +16,8 @@ from emcmot.tp.tp cimport TP_LINE, TP_TERM_BLEND
 cdef enum:
     LONGEST_RUN = 64             # raws in one chord
 
-cdef double SHARE = 0.5          # of the tolerance that chords may use
+cdef double SHARE = 0.5          # of the tolerance that chords may use,
+cdef double SMOOTH_SHARE = 0.3  # and where jerk is limited: there corners are as wide as several chords
 cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
 cdef double ALIKE = 0.75         # ratio of the tolerances of neighbours below which a run ends
 cdef double GROWTH = 1.3         # of one chord over the one before
@@ -112,7 +113,7 @@ cdef double _deviation(const TpState* tp, int64_t first, int count, double longe
     if square > longest * longest or square == 0.0:
         return -1.0
     for k in range(count):
-        allowed = fmin(allowed, SHARE * _raw(tp, first + k).tolerance)
+        allowed = fmin(allowed, (SMOOTH_SHARE if tp.smooth else SHARE) * _raw(tp, first + k).tolerance)
     allowed *= allowed
     for k in range(count - 1):
         q = _raw(tp, first + k).end

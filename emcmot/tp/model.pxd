@@ -18,8 +18,8 @@ from emcmot.tp.outputs cimport TpIo
 cdef enum:
     AXES = 9
     LIMITED = AXES + TP_JOINTS   # what has limits: the axes, and the joints where they are not the axes
-    STRETCHES = 64               # of the path ahead, in jerk-limited motion
-    WINDOW = 64                  # periods that smoothing averages over at most
+    KINKS = 512                  # of the part of the path that is being laid smoothly
+    KNOTS = 5                    # of an arc that are known at a time
     BACK_RING = 512              # spans that a reverse run can go back
 
 cdef enum FeedUnit:          # which axes the length of a segment is measured along
@@ -31,6 +31,7 @@ cdef enum SpanKind:
     SPAN_LINE = 1            # part of a straight move: constant limits, w free within them
     SPAN_CURVE = 2           # part of a move whose derivatives change: short enough for their linear interpolation
     SPAN_BLEND = 3           # part of the corner between segment `seg - 1` and segment `seg`
+    SPAN_CUBIC = 4           # jerk-limited motion: part of a path that is cubic in u; it may run on into later segments
 
 cdef enum Chain:             # position-synchronised moves one after the other
     CHAIN_NONE = 0
@@ -44,6 +45,11 @@ cdef enum TapPhase:
     TAP_OUT = 2              # from the bottom on: the spindle slows down, turns back, and leads out
     TAP_LEAVE = 3            # from the start on: the spindle slows down again
     TAP_PLACE = 4            # to the start
+
+cdef enum ChainEnd:          # how the last segment of a chain ends
+    END_OPEN = 0             # not known yet
+    END_CORNER = 1           # another one follows
+    END_STOP = 2
 
 ctypedef struct Segment:
     int kind                 # TpKind
@@ -71,6 +77,8 @@ ctypedef struct Segment:
     int64_t raw_first        # raws that it stands for
     int raw_count
     double deviation         # how far the raws may be from it; their tolerance less this is left for blends
+    double begin             # jerk-limited motion: way along the chain at its start,
+    double pace              # and du per unit of that way
     double trim_start        # u taken by the blend before, and by the blend after
     double trim_end
     int exit_stop            # its end can only be passed at rest
@@ -98,24 +106,61 @@ ctypedef struct Span:
     double acc               # lines: limit of |d2u/dt2|; else the limit that the segment asks for, or infinity
     double tight             # share of the axis accelerations that interpolation leaves
     double beta              # largest w at the start from which every later limit can be kept
-    double steady            # jerk-limited motion: largest du/dt,
+    double reserve           # jerk-limited motion: share of accelerations and jerks that is planned with,
+    double steady            # largest du/dt,
     double push              # largest |d2u/dt2|
     double jerk              # and largest |d3u/dt3|
-    double along             # share of an axis's jerk that changes of the speed may use
     double dq0[LIMITED]      # derivatives by u at both ends, for the n axes of `axis`; of lines only where they are asked for
     double dq1[LIMITED]
     double ddq0[LIMITED]
     double ddq1[LIMITED]
+    double q0[AXES]          # cubic ones: position at both ends
+    double q1[AXES]
 
-ctypedef struct Stretch:     # spans that jerk-limited motion takes as one, with the tightest limits of any of them
-    int64_t last             # span that it ends with
-    int64_t seg              # segment that its feed is that of
-    double length
-    double speed
-    double steady
-    double push
-    double jerk
-    double now               # speed under the overrides of this period
+ctypedef struct Kink:        # where the direction of the path changes, and the hat over which it does so smoothly
+    double place             # way along the chain; (from + middle + to) / 3
+    double start             # of the hat,
+    double middle            # where it is highest,
+    double to                # and its end
+    double sharpness         # norm of `turn`, negative for the first of two parts of a corner; 0: no corner of the program
+    double tolerance         # of the corner,
+    double off[AXES]         # and what hats, its own and others, have taken of it
+    double turn[AXES]        # change of the direction
+    double vertex[AXES]      # the line behind it: a point, at `place`,
+    double out[AXES]         # and the direction
+
+ctypedef struct Cell:        # of the speed plan, one for each span
+    double w                 # coefficient of the plan in force,
+    double fresh             # and of the one that is being made
+    double cap               # largest w there, feed included
+    double weight            # s; time that it takes, nearly
+    double gradient          # its equations
+    double diagonal
+    double beside[2]         # the upper half of the matrix: next column and next but one
+    double change            # and their solution
+
+ctypedef struct Improvement: # of the plan: where its computation is
+    int phase                # InteriorPhase
+    int64_t origin           # span with which it begins
+    int64_t first            # coefficients from this one on may change
+    int64_t end              # spans before this one are planned
+    int64_t cursor
+    int attempt              # shares of one step that were tried
+    int steps                # done with the barrier as it is
+    int total                # and in all
+    int checks               # of the result
+    int failed               # the last one led to nothing
+    double barrier           # weight of what keeps away from limits
+    double weight            # of all spans
+    double even              # of half a span, the same for all
+    double near              # what is left of a limit from where on its barrier is a parabola
+    int within               # no limit is broken so far
+    double worst             # largest share of a limit in the plan
+    double merit             # of the plan,
+    double trial             # and of the one that is tried,
+    double trial_worst       # with its largest share of a limit
+    double share             # of the change that is tried
+    double gain              # first-order gain of a whole change
 
 ctypedef struct TpState:
     double dt                # servo period, s
@@ -147,7 +192,7 @@ ctypedef struct TpState:
     int span_mask
     int64_t active           # span being executed
     int64_t span_tail
-    double body_end          # u of segment `seg_built - 1` up to which its spans reach
+    double body_end          # u of segment `seg_built - 1` up to which its spans reach (limited jerk: way along the chain)
     double body_goal         # u up to which they shall reach
     int corner_known         # the corner at the end of that segment is decided
     int64_t settled          # spans before this one have their final beta
@@ -175,18 +220,37 @@ ctypedef struct TpState:
 
     int limit_jerk           # asked for; takes effect at rest
     int smooth               # in force
-    double a                 # d2u/dt2, where jerk is limited
+    Cell* cells              # as many as spans; jerk is limited
+    int cell_mask
+    int64_t plan_from        # spans from this one,
+    int64_t planned          # to before this one, have a speed plan
+    double plan_time         # that it takes from here on, nearly
+    int replan               # it can be improved
+    Improvement improvement
+    double rate              # of the plan's time to real time,
+    double rate_change       # 1/s
+    double rate_limit        # and what overrides leave of it
     int hungry               # the path known ahead is too short for the speed that the limits allow
-    int draining             # at rest at the end of a move, until the smoothed position is there as well
-    int window               # periods that the commanded position is the average of
-    int slot                 # of the newest position in `recent`
-    int lag                  # periods until the commanded position has caught up with the planned one
-    double planned[AXES]     # position on the path
-    double recent[WINDOW][AXES]
-    Stretch stretches[STRETCHES]
-    int stretch_head
-    int stretch_count
-    int64_t stretched        # spans before this one are part of a stretch
+    Kink kinks[KINKS]        # of the chain that is being laid: moves from one stop to the next
+    int64_t kink_head
+    int64_t kink_tail
+    Kink corner              # the one at the end of the last segment of the chain, where that is decided
+    int end                  # ChainEnd
+    double hold              # way before the end of the last segment that is not laid while its end is open
+    int crowded              # the corner's hat reaches other corners: it is put on a grid,
+    double grid_begin        # which begins here
+    double grid_step         # and has this spacing
+    double grid_used         # place of the last corner on it
+    int64_t laying           # segment that the next span is of
+    double slow_place        # newest place that is passed slowly, or at rest,
+    double slow_speed        # and how fast
+    double node[3][AXES]     # position and derivatives at the end of the last span
+    double arc_ended         # way along the chain where its last arc ended
+    int arc_open             # kinks are missing of the last segment, an arc
+    double knots[KNOTS]      # of that arc; the next kink has the middle three
+    double arc_start         # spacing of its knots about its ends; 0: the chain begins or ends there
+    double arc_end
+    double arc_step          # and at most between
 
     double held              # d2u/dt2 chosen last, on span `held_span`, to be held to its end
     int64_t held_span

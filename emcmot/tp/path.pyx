@@ -18,7 +18,7 @@ from emcmot.tp.joints cimport Curve, add_joints
 from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
 from emcmot.tp.model cimport AXES, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
-from emcmot.tp.smooth cimport ALONG, bend_speed, first_speed, limit_smooth, smoothing_tolerance
+from emcmot.tp.spans cimport keep_derivatives, limit_speed, new_span
 from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FS_ENABLED
 
 cdef enum:
@@ -28,6 +28,9 @@ cdef enum:
     SPANS_PER_STEP = 64          # spans that one step of building may add
     SPANS_PER_SWEEP = 512        # spans per period that a change of feed caps recomputes
     JOINT_HALVINGS = 8           # of a span, until
+    SMALL_QUEUE = 128            # spans; up to this many the look-ahead is refreshed for every new one
+    REFRESH_SHARE = 16           # longer ones: when this share of the path is new
+    FRESH_SPANS = 256            # so many are looked at without need
     MOTION_TRAVERSE = 1
 
 cdef double NO_WAY = 1e-14       # of the length of a move; spans shorter than this are left out
@@ -76,6 +79,13 @@ cdef double feed_cap(const TpState* tp, int64_t index) noexcept nogil:
     return fmin(v * v, span.cap)
 
 
+cdef double full_cap(const TpState* tp, int64_t index) noexcept nogil:
+    """The same without overrides."""
+    cdef const Span* span = _span(tp, index)
+    cdef const Segment* seg = _seg(tp, span.seg)
+    return fmin((fmin(seg.vel, seg.vel_max) / span.speed) ** 2, span.cap)
+
+
 # --- look-ahead -------------------------------------------------------------------------------------------------------
 
 cdef double exit_limit(const TpState* tp, int64_t index) noexcept nogil:
@@ -117,19 +127,33 @@ cdef void _begin_looking(TpState* tp) noexcept nogil:
     tp.new_spans = tp.span_tail
 
 
+cdef int look_at(TpState* tp, int64_t index, int* shielded) noexcept nogil:
+    """Find anew what is safe at the start of a span; whether that is something else now."""
+    cdef Span* span = _span(tp, index)
+    cdef double was = span.beta
+    span.beta = entry_limit(span, tp.amax, feed_cap(tp, index), exit_limit(tp, index), shielded)
+    return span.beta != was
+
+
+cdef void look_ahead(TpState* tp) noexcept nogil:
+    """Refresh the look-ahead when the next span's limit may still rise and enough of the path is new to be worth it.
+
+    A path that is known far ahead asks for nothing, and grows; it is refreshed in pieces that a period can bear.
+    """
+    cdef int64_t fresh = tp.span_tail - tp.new_spans, known = tp.span_tail - tp.active
+    cdef int wanted = tp.active + 1 >= tp.settled and (known < SMALL_QUEUE or fresh * REFRESH_SHARE >= known)
+    if tp.looking >= 0 or fresh >= FRESH_SPANS or (fresh > 0 and wanted):
+        refresh_some(tp)
+
+
 cdef void _look_back(TpState* tp, int64_t stop) noexcept nogil:
     """Take the look-ahead back to the span after `stop`; its cursor becomes -1 where it is done."""
     cdef int shielded, unchanged = 0
-    cdef double beta
-    cdef Span* span
     while tp.looking > stop:
-        span = _span(tp, tp.looking)
-        beta = entry_limit(span, tp.amax, feed_cap(tp, tp.looking), exit_limit(tp, tp.looking), &shielded)
+        unchanged = not look_at(tp, tp.looking, &shielded) and tp.looking < tp.looking_new
         tp.look_left -= 1
-        unchanged = tp.looking < tp.looking_new and beta == span.beta
         if unchanged:
             break
-        span.beta = beta
         if shielded and tp.looking_settled < 0:
             tp.looking_settled = tp.looking
         tp.looking -= 1
@@ -161,7 +185,6 @@ cdef void sweep_caps(TpState* tp) noexcept nogil:
     """After a change of feed caps: recompute beta of all spans, a bounded number of them per period."""
     cdef int64_t stop
     cdef int shielded
-    cdef Span* span
     if tp.sweep <= tp.active:
         if not tp.caps_changed:
             return
@@ -170,8 +193,7 @@ cdef void sweep_caps(TpState* tp) noexcept nogil:
     tp.sweep = min(tp.sweep, tp.span_tail - 1)
     stop = max(tp.active, tp.sweep - SPANS_PER_SWEEP)
     while tp.sweep > stop:
-        span = _span(tp, tp.sweep)
-        span.beta = entry_limit(span, tp.amax, feed_cap(tp, tp.sweep), exit_limit(tp, tp.sweep), &shielded)
+        look_at(tp, tp.sweep, &shielded)
         tp.sweep -= 1
 
 
@@ -196,7 +218,7 @@ cdef void extend(TpState* tp) noexcept nogil:
         steps += 1
         last = tp.seg_built - 1
         spans = tp.span_tail
-        urgent = tp.hungry if tp.smooth else tp.active + 1 >= min(tp.settled, tp.span_tail)
+        urgent = tp.active + 1 >= min(tp.settled, tp.span_tail)
         if tp.seg_built == tp.seg_tail:
             steps += take_segment(tp, urgent) // RAWS_PER_STEP
         if last >= tp.seg_head and not tp.corner_known and tp.seg_built < tp.seg_tail:
@@ -218,29 +240,11 @@ cdef void _plan_corner(TpState* tp, int64_t last) noexcept nogil:
     cdef Segment* a = _seg(tp, last)
     cdef Segment* b = _seg(tp, last + 1)
     cdef Corner corner
-    if tp.body_end >= a.length * (1.0 - NO_WAY) and not tp.smooth:
+    if tp.body_end >= a.length * (1.0 - NO_WAY):
         _reopen(tp, last)
         return
     corner = decide_corner(tp, a, b, a.length - fmax(tp.body_end, a.trim_start))
-    if tp.smooth and corner.trim > 0.0 and _crawls(tp, a, b, &corner):
-        corner.trim = 0.0
-        corner.stop = 1
     _set_corner(tp, last, corner)
-
-
-cdef int _crawls(const TpState* tp, const Segment* a, const Segment* b, const Corner* corner) noexcept nogil:
-    """Whether a smooth blend would be slower than the first period after a stop, which is all the same to the machine."""
-    cdef double before[AXES]
-    cdef double after[AXES]
-    cdef double dq[AXES]
-    cdef double bend[AXES]
-    cdef double unused[AXES]
-    derivatives(a, a.length, before, unused)
-    derivatives(b, 0.0, after, unused)
-    blend_derivatives(a, b, corner, corner.trim, dq, bend)
-    return bend_speed(tp, fmin(smoothing_tolerance(a), smoothing_tolerance(b)), bend) < fmax(
-        first_speed(tp, before), first_speed(tp, after)
-    )
 
 
 cdef void _set_corner(TpState* tp, int64_t last, Corner corner) noexcept nogil:
@@ -332,24 +336,6 @@ cdef void _start_segment(TpState* tp, int64_t index) noexcept nogil:
     tp.corner_known = 0
 
 
-cdef Span* _new_span(TpState* tp, int kind, int64_t seg, double u0, double h) noexcept nogil:
-    cdef Span* span = _span(tp, tp.span_tail)
-    tp.span_tail += 1
-    span.kind = kind
-    span.stop = 0
-    span.n = 0
-    span.seg = seg
-    span.u0 = u0
-    span.h = h
-    span.trim = 0.0
-    span.ratio = 1.0
-    span.acc = INFINITY
-    span.tight = 1.0
-    span.beta = 0.0
-    span.along = ALONG
-    return span
-
-
 cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     """Spans of the segment itself, from body_end on; long arcs come in several steps."""
     cdef Segment* seg = _seg(tp, index)
@@ -367,19 +353,9 @@ cdef void _add_body(TpState* tp, int64_t index) noexcept nogil:
     count = <int>fmin(pieces, SPANS_PER_STEP)
     h = way / pieces
     for k in range(count):
-        span = _new_span(tp, kind, index, tp.body_end + k * h, h)
-        if kind == SPAN_LINE and _between_stops(tp, index):
-            span.along = 1.0
+        span = new_span(tp, kind, index, tp.body_end + k * h, h)
         _limit_body(tp, seg, span)
     tp.body_end = tp.body_goal if count >= pieces else tp.body_end + count * h
-
-
-cdef int _between_stops(const TpState* tp, int64_t index) noexcept nogil:
-    """Whether no bend is near a straight move: it has the jerk for itself."""
-    cdef const Segment* seg = _seg(tp, index)
-    if seg.trim_start > 0.0 or not (tp.corner_known and seg.exit_stop):
-        return 0
-    return index <= tp.seg_head or _seg(tp, index - 1).exit_stop
 
 
 cdef double _joint_way(TpState* tp, const Segment* seg, int64_t index, double h) noexcept nogil:
@@ -387,7 +363,7 @@ cdef double _joint_way(TpState* tp, const Segment* seg, int64_t index, double h)
     cdef Span* span
     cdef int step
     for step in range(JOINT_HALVINGS):
-        span = _new_span(tp, SPAN_CURVE, index, tp.body_end, h)
+        span = new_span(tp, SPAN_CURVE, index, tp.body_end, h)
         _limit_body(tp, seg, span)
         tp.span_tail -= 1
         if span.tight >= 1.0 - JOINT_MISS:
@@ -417,54 +393,21 @@ cdef void _limit_body(TpState* tp, const Segment* seg, Span* span) noexcept nogi
         for i in range(AXES):
             if dq0[i] != 0.0:
                 span.acc = fmin(span.acc, tp.amax[i] / fabs(dq0[i]))
-        _limit_speed(tp, span, dq0, dq0, seg.vel_max, seg.unit)
-        if tp.smooth:
-            _keep_derivatives(span, dq0, dq0, ddq0, ddq0)
-            limit_smooth(tp, INFINITY, span)
+        limit_speed(tp, span, dq0, dq0, seg.vel_max, seg.unit)
         return
     angle = fabs(seg.omega) * span.h
     span.tight = 1.0 - ARC_MISS * angle * angle
     derivatives(seg, span.u0 + span.h, dq1, ddq1)
-    _limit_speed(tp, span, dq0, dq1, seg.vel_max, seg.unit)
-    _keep_derivatives(span, dq0, dq1, ddq0, ddq1)
+    limit_speed(tp, span, dq0, dq1, seg.vel_max, seg.unit)
+    keep_derivatives(span, dq0, dq1, ddq0, ddq1)
     if tp.inverse != NULL:
+        curve.cubic = NULL
         curve.before = NULL
         curve.seg = seg
         curve.trim = 0.0
         curve.length = seg.length
         add_joints(tp, &curve, span)
     _bound_curve(tp, span)
-    if tp.smooth:
-        limit_smooth(tp, smoothing_tolerance(seg), span)
-
-
-cdef void _keep_derivatives(
-    Span* span, const double* dq0, const double* dq1, const double* ddq0, const double* ddq1) noexcept nogil:
-    """Store the derivatives of the axes that move."""
-    cdef int i
-    span.n = 0
-    for i in range(AXES):
-        if dq0[i] != 0.0 or dq1[i] != 0.0 or ddq0[i] != 0.0 or ddq1[i] != 0.0:
-            span.axis[span.n] = i
-            span.dq0[span.n] = dq0[i]
-            span.dq1[span.n] = dq1[i]
-            span.ddq0[span.n] = ddq0[i]
-            span.ddq1[span.n] = ddq1[i]
-            span.n += 1
-
-
-cdef void _limit_speed(
-    const TpState* tp, Span* span, const double* dq0, const double* dq1, double vel_max, int unit) noexcept nogil:
-    """Hard cap of w, and what the feed is measured by."""
-    cdef double rate, v
-    cdef int i
-    span.speed = span.speed_before = fmax(norm(dq0, unit), norm(dq1, unit))
-    v = vel_max / span.speed
-    for i in range(AXES):
-        rate = fmax(fabs(dq0[i]), fabs(dq1[i]))
-        if rate > 0.0:
-            v = fmin(v, tp.vmax[i] * span.tight / rate)
-    span.cap = v * v
 
 
 cdef void _bound_curve(const TpState* tp, Span* span) noexcept nogil:
@@ -498,6 +441,7 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
     corner.ratio = a.exit_ratio
     count = blend_spans(a, b, &corner)
     h = 2.0 * corner.trim / count
+    curve.cubic = NULL
     curve.before = a
     curve.seg = b
     curve.trim = corner.trim
@@ -505,19 +449,17 @@ cdef void _add_blend(TpState* tp, int64_t index) noexcept nogil:
     blend_derivatives(a, b, &corner, 0.0, dq[0], ddq[0])
     for k in range(count):
         now, then = k & 1, 1 - (k & 1)
-        span = _new_span(tp, SPAN_BLEND, index, k * h, h)
+        span = new_span(tp, SPAN_BLEND, index, k * h, h)
         blend_derivatives(a, b, &corner, (k + 1) * h, dq[then], ddq[then])
         span.trim = corner.trim
         if a.kind == TP_ARC or b.kind == TP_ARC:
             span.tight = ARC_BLEND_TIGHT
-        _limit_speed(tp, span, dq[now], dq[then], b.vel_max, b.unit)
+        limit_speed(tp, span, dq[now], dq[then], b.vel_max, b.unit)
         span.speed_before = fmax(norm(dq[now], a.unit), norm(dq[then], a.unit))
         span.cap = fmin(span.cap, (a.vel_max / span.speed_before) ** 2)
-        _keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
+        keep_derivatives(span, dq[now], dq[then], ddq[now], ddq[then])
         if tp.inverse != NULL:
             add_joints(tp, &curve, span)
         if span.tight < 1.0:
             _bound_curve(tp, span)
-        if tp.smooth:
-            limit_smooth(tp, fmin(smoothing_tolerance(a), smoothing_tolerance(b)), span)
     span.ratio = corner.ratio

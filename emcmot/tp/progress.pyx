@@ -8,7 +8,7 @@ from libc.stdint cimport int64_t
 from libc.string cimport memcpy
 
 from emcmot.tp.follow cimport follows_position, follows_velocity, spindle_speed, waits_for_index
-from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, CHAIN_WAITING, SPAN_BLEND, SPAN_CUBIC, Segment, Span, TpState
 from emcmot.tp.path cimport body_left, feed_cap, feed_scale
 from emcmot.tp.tap cimport tap
 from emcmot.tp.tp cimport TP_FH_ENABLED
@@ -30,9 +30,17 @@ cdef double reached(const TpState* tp, const Span* span) noexcept nogil:
 cdef int64_t current_segment(const TpState* tp) noexcept nogil:
     """Index of the executing segment; seg_tail when there is none. A blend is half the one, half the other."""
     cdef const Span* span
+    cdef int64_t index
+    cdef double way
     if tp.active >= tp.span_tail:
         return tp.seg_built
     span = _span(tp, tp.active)
+    if span.kind == SPAN_CUBIC:
+        index = span.seg
+        way = _seg(tp, index).begin + reached(tp, span)
+        while index + 1 < tp.seg_built and _seg(tp, index + 1).begin > 0.0 and way >= _seg(tp, index + 1).begin:
+            index += 1
+        return index
     return span.seg - (span.kind == SPAN_BLEND and reached(tp, span) < span.trim)
 
 
@@ -51,7 +59,9 @@ cdef int64_t current_raw(const TpState* tp) noexcept nogil:
         return seg.raw_first
     span = _span(tp, tp.active)
     u = reached(tp, span)
-    if span.kind == SPAN_BLEND:
+    if span.kind == SPAN_CUBIC:
+        u = (u - seg.begin) * seg.pace
+    elif span.kind == SPAN_BLEND:
         u += seg.length - span.trim if index < span.seg else -span.trim
     for k in range(seg.raw_count):
         way += tp.raws[(seg.raw_first + k) & tp.raw_mask].length

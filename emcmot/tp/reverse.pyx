@@ -10,10 +10,9 @@ ring of the planned path is put back, with the place in it. Both happen at rest;
 from libc.math cimport fmax, fmin
 from libc.stdint cimport int64_t
 
-from emcmot.tp.jerk cimport forget_stretches
-from emcmot.tp.limits cimport entry_limit
-from emcmot.tp.model cimport BACK_RING, SPAN_BLEND, Segment, Span, TpState
-from emcmot.tp.path cimport exit_limit, feed_cap, refresh, stop_looking
+from emcmot.tp.interior cimport forget_plan
+from emcmot.tp.model cimport AXES, BACK_RING, SPAN_BLEND, Segment, Span, TpState
+from emcmot.tp.path cimport look_at, refresh, stop_looking
 from emcmot.tp.tp cimport TP_TAP
 
 cdef enum:
@@ -52,7 +51,8 @@ cdef int turn_back(TpState* tp) noexcept nogil:
     tp.settled = tp.new_spans = 0
     tp.reversing = 1
     _place(tp, 0, u)
-    refresh(tp)
+    if not tp.smooth:
+        refresh(tp)
     return 1
 
 
@@ -61,7 +61,6 @@ cdef void turn_forward(TpState* tp) noexcept nogil:
     cdef int64_t index = tp.turned_at - tp.active, k
     cdef double u = tp.u
     cdef int shielded
-    cdef Span* span
     tp.spans = tp.ahead_spans
     tp.span_mask = tp.ahead_mask
     tp.span_tail = tp.ahead_tail
@@ -70,9 +69,8 @@ cdef void turn_forward(TpState* tp) noexcept nogil:
     tp.reversing = 0
     _place(tp, index, u)
     k = min(tp.ahead_active, tp.span_tail - 1)
-    while k > index:
-        span = _span(tp, k)
-        span.beta = entry_limit(span, tp.amax, feed_cap(tp, k), exit_limit(tp, k), &shielded)
+    while k > index and not tp.smooth:
+        look_at(tp, k, &shielded)
         k -= 1
 
 
@@ -85,7 +83,8 @@ cdef void _place(TpState* tp, int64_t index, double u) noexcept nogil:
     tp.seg_head = _first_segment(span)
     tp.held_span = tp.sweep = -1
     tp.caps_changed = 1
-    forget_stretches(tp)
+    tp.hungry = 1
+    forget_plan(tp)
 
 
 cdef inline int64_t _first_segment(const Span* span) noexcept nogil:
@@ -128,3 +127,6 @@ cdef void _mirror(const TpState* tp, int64_t index, Span* image, int last) noexc
         image.dq1[j] = -span.dq0[j]
         image.ddq0[j] = span.ddq1[j]
         image.ddq1[j] = span.ddq0[j]
+    for j in range(AXES):
+        image.q0[j] = span.q1[j]
+        image.q1[j] = span.q0[j]

@@ -1,137 +1,542 @@
-"""Where jerk is limited: the commanded position is the average of the planned ones of the last periods.
+"""The path where jerk is limited: lays cubic spans of queued moves, from one stop to the next.
 
-The planned path bends suddenly, where a blend or an arc begins; averages over a time T do not: its commanded path has a continuous
-curvature, and a jump of the acceleration becomes a jerk of that jump / T. Averages keep every limit of velocity and
-acceleration, in each axis. From the path they are off by no more than T^2 / 24 times the acceleration across it.
-
-An axis spends its jerk by shares: most of it on changes of the acceleration along the path (`jerk` of a span), a part each
-way on its bends, a tenth on the change of speed within them. On straight moves from stop to stop, changes of the
-acceleration along the path have all of it. T is chosen at rest, for the tolerance of the move that starts, so that
-both bounds on bends, that of jerk and that of the distance from the path, bind at the same speed.
-Called by tp (choice), path (limits of spans) and advance (positions).
+Moves between two stops are a *chain*. Its corners become kinks (see kink) as wide as the tolerance, the room and the programmed
+speed allow. An arc becomes a polyline whose kinks have the hats of a cubic spline through it, with knots
+that are close where it begins and ends, because there the curvature must come and go within the tolerance, and wide apart
+between. The path is laid up to where the next corner may begin; the end of the queue stays open until the machine
+would have to slow down for want of path, because what is laid to its end is a stop.
+Called by advance; jerk moves the machine along the spans.
 """
 
-from libc.math cimport INFINITY, cbrt, fabs, fmax, fmin, sqrt
-from libc.string cimport memcpy
+from libc.math cimport INFINITY, fabs, floor, fmax, fmin, sqrt
+from libc.stdint cimport int64_t
+from libc.string cimport memcpy, memset
 
-from emcmot.tp.model cimport AXES, WINDOW, Segment, Span, TpState
-from emcmot.tp.tp cimport TP_TERM_BLEND
+from emcmot.tp.corner cimport TANGENT, corner_ratio, corner_tolerance, must_stop
+from emcmot.tp.cubic cimport corner_speed, first_speed, half_for_speed, limit_cubic
+from emcmot.tp.geometry cimport derivatives, position
+from emcmot.tp.interior cimport forget_plan
+from emcmot.tp.joints cimport Curve, add_joints
+from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, corner_back, forget_passed, hat_off, length, next_node, path_at
+from emcmot.tp.kink cimport reach_back, size_corner, taken
+from emcmot.tp.merge cimport take_segment
+from emcmot.tp.model cimport AXES, END_CORNER, END_OPEN, END_STOP, KINKS, KNOTS, SPAN_CUBIC, SPAN_LINE
+from emcmot.tp.model cimport Kink, Segment, Span, TpState
+from emcmot.tp.pieces cimport piece, turn
+from emcmot.tp.spans cimport keep_derivatives, limit_speed, new_span
+from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND
 
-ALONG = 0.6                          # shares of an axis's jerk: along the path,
-cdef double BEND = 0.15              # for a bend; two may follow each other, to and fro
-cdef double MIXED = 0.1              # 3 q'' v a
-cdef double STEADY_SHARE = 0.8       # of an axis's acceleration that bends may use; speed needs the rest to change
-cdef double SMOOTHING_SHARE = 0.25   # of the tolerance
-cdef double EXACT_SMOOTHING = 1e-3   # lu; what exact path mode gives to smoothing
-cdef double SPREAD = 24.0            # an average over T is off by acceleration T^2 / 24
-cdef int LEAST_WINDOW = 8
+cdef enum:
+    STEPS_PER_PERIOD = 96
+    KINKS_IN_WORK = 16           # room that a step needs in their ring
+    SPANS_IN_WORK = 16
+    NEIGHBOURS = 8               # corners on each side that a hat may reach, and that are known when it is made
+    SHORTENINGS = 10
+    FITTINGS = 24
+    GRID_STEPS = 3               # of the half-width of a hat
+
+cdef double EXACT_ROUNDING = 1e-3    # lu; what exact path mode gives to the ends of arcs
+cdef double ARC_END_MISS = 0.045     # an arc's end is off by this times curvature * spacing^2
+cdef double ARC_END_TWIST = 0.6      # and the third derivative there is this times curvature / spacing
+cdef double ARC_STEP = 0.1           # rad; spacing of knots on arcs
+cdef double OPEN_STEPS = 4.0         # of knots before the end of an arc, where that is open
+cdef double KNOT_GROWTH = 2.0        # of one spacing to the next
+cdef double SPEED_RESERVE = 1.2      # corners are made for the programmed speed times this,
+cdef double WIDER = 2.0              # this much wider,
+cdef double SLIGHTLY_WIDER = 8.0     # and slight ones even more: they are as many as a curve has moves
+cdef double SLIGHT = 0.1
+cdef double GRID_WIDER = 2.0         # hats may be narrower than the tolerance allows by this before the grid changes
+cdef double FAIR_SHARE = 0.9        # of the tolerance that corners plan with; their neighbours need not be as wide
+cdef double LEAST_HAT = 0.01         # of the shorter move
+cdef double MUCH_LESS = 0.5          # tolerance of another corner, which this one does not reach
+cdef double LAST_HOLD = 2e-3         # lu or degrees; an open end as near as this becomes a stop
+cdef double SAME_PLACE = 1e-9        # of the way
+cdef double MOST_TURN = 0.25           # of one span
+cdef double JOINT_MISS = 0.02        # of a joint's acceleration that a span may miss
 
 
-cdef void choose_smoothing(TpState* tp, double tolerance) noexcept nogil:
-    """Decide, at rest with an empty queue, whether jerk is limited, and over how many periods positions are averaged."""
-    cdef double jerk = INFINITY, time
+cdef inline Segment* _seg(const TpState* tp, int64_t index) noexcept nogil:
+    return &tp.segs[index & tp.seg_mask]
+
+
+cdef inline double _way(const Segment* seg) noexcept nogil:
+    """Length of a segment along its chain."""
+    return seg.length / seg.pace
+
+
+cdef void choose_smoothing(TpState* tp) noexcept nogil:
+    """Decide, at rest with an empty queue, whether jerk is limited."""
+    cdef double jerk = INFINITY
     cdef int i
     for i in range(AXES + tp.joints):
         jerk = fmin(jerk, tp.jmax[i])
     tp.smooth = tp.limit_jerk and jerk < INFINITY
-    tp.window = 1
-    tp.a = 0.0
-    tp.stretch_count = 0
+    tp.body_end = tp.body_goal = 0.0
+    forget_chain(tp)
     tp.hungry = 1
-    tp.draining = tp.slot = 0
-    if not tp.smooth:
-        return
-    if tolerance <= 0.0:
-        tolerance = EXACT_SMOOTHING / SMOOTHING_SHARE
-    time = cbrt(SPREAD * SMOOTHING_SHARE * tolerance / (BEND * jerk))
-    tp.window = <int>fmax(LEAST_WINDOW, fmin(WINDOW, time / tp.dt))
-    for i in range(tp.window):
-        memcpy(tp.recent[i], tp.pos, sizeof(tp.pos))
+    forget_plan(tp)
 
 
-cdef double blend_share(const TpState* tp) noexcept nogil:
-    """Share of the tolerance that blends may use."""
-    return 1.0 - SMOOTHING_SHARE if tp.smooth else 1.0
+cdef void forget_chain(TpState* tp) noexcept nogil:
+    """Nothing of what was laid goes on."""
+    tp.end = END_STOP
+    tp.arc_open = 0
+    tp.kink_head = tp.kink_tail = 0
 
 
-cdef double smoothing_tolerance(const Segment* seg) noexcept nogil:
-    """Distance from a move that smoothing may bring."""
-    if seg.term != TP_TERM_BLEND or seg.tolerance <= 0.0:
-        return EXACT_SMOOTHING
-    return SMOOTHING_SHARE * (seg.tolerance - seg.deviation)
-
-
-cdef double bend_speed(const TpState* tp, double tolerance, const double* bend) noexcept nogil:
-    """Largest speed where the second derivative by u is `bend`."""
-    cdef double time = tp.window * tp.dt, w = INFINITY, across = 0.0
-    cdef int i
-    for i in range(AXES):
-        if bend[i] != 0.0:
-            w = fmin(w, fmin(STEADY_SHARE * tp.amax[i], BEND * tp.jmax[i] * time) / fabs(bend[i]))
-            across += bend[i] * bend[i]
-    return sqrt(fmin(w, SPREAD * tolerance / (sqrt(across) * time * time))) if across > 0.0 else INFINITY
-
-
-cdef double first_speed(const TpState* tp, const double* rate) noexcept nogil:
-    """Speed that the first period of a start brings where the first derivative by u is `rate`."""
-    cdef double jerk = INFINITY
-    cdef int i
-    for i in range(AXES):
-        if rate[i] != 0.0:
-            jerk = fmin(jerk, fmin(ALONG * tp.jmax[i], tp.amax[i] / tp.dt) / fabs(rate[i]))
-    return jerk * tp.dt * tp.dt
-
-
-cdef void limit_smooth(const TpState* tp, double tolerance, Span* span) noexcept nogil:
-    """Largest speed, acceleration and jerk along a span whose derivatives and cap are known."""
-    cdef double time = tp.window * tp.dt, w = span.cap, rate, bend, across = 0.0, a, jerk, v
-    cdef int j, i
-    for j in range(span.n):
-        i = span.axis[j]
-        bend = fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j]))
-        if bend == 0.0:
+cdef void extend_smoothly(TpState* tp) noexcept nogil:
+    """Lay the path ahead, as far as rings and this period's share of work allow."""
+    cdef int step, urgent = tp.hungry, more = 1
+    for step in range(STEPS_PER_PERIOD):
+        if tp.span_tail - tp.active + SPANS_IN_WORK >= tp.span_mask or tp.seg_tail - tp.seg_head + NEIGHBOURS + 2 >= tp.seg_mask:
+            return
+        if more and tp.seg_tail - tp.seg_built < NEIGHBOURS:
+            more = take_segment(tp, urgent and tp.seg_built == tp.seg_tail)
+        if tp.end == END_OPEN and tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS:
+            _decide_end(tp, &urgent)
+        if _lay(tp):
             continue
-        w = fmin(w, fmin(STEADY_SHARE * tp.amax[i] * span.tight, BEND * tp.jmax[i] * time) / bend)
-        if i < AXES:
-            across += bend * bend
-    if across > 0.0:
-        w = fmin(w, SPREAD * tolerance / (sqrt(across) * time * time))
-    v = sqrt(w)
-    a = span.acc
-    jerk = INFINITY
-    for j in range(span.n):
-        i = span.axis[j]
-        rate = fmax(fabs(span.dq0[j]), fabs(span.dq1[j]))
-        bend = fmax(fabs(span.ddq0[j]), fabs(span.ddq1[j]))
-        if rate > 0.0:
-            a = fmin(a, (tp.amax[i] * span.tight - bend * w) / rate)
-            jerk = fmin(jerk, span.along * tp.jmax[i] / rate)
-        if bend > 0.0:
-            a = fmin(a, MIXED * tp.jmax[i] / (3.0 * bend * v))
-    span.steady = v
-    span.push = a
-    span.jerk = fmin(jerk, a / tp.dt)        # without a limit: any acceleration within a period
+        if tp.arc_open and tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS and _spline_arc(tp):
+            continue
+        if tp.end == END_OPEN or tp.arc_open:
+            return
+        if tp.end == END_CORNER:
+            _go_round(tp)
+        elif tp.body_end < tp.body_goal or tp.seg_built == tp.seg_tail:
+            return
+        else:
+            _begin_chain(tp)
 
 
-cdef void command_planned(TpState* tp) noexcept nogil:
-    memcpy(tp.pos, tp.planned, sizeof(tp.pos))
+# --- chains -----------------------------------------------------------------------------------------------------------
+
+cdef void _begin_chain(TpState* tp) noexcept nogil:
+    """Go on behind a stop."""
+    cdef Segment* seg = _seg(tp, tp.seg_built)
+    seg.begin = 0.0
+    seg.pace = 1.0
+    tp.kink_head = tp.kink_tail = 0
+    tp.body_end = tp.arc_ended = tp.grid_step = 0.0
+    tp.crowded = 0
+    tp.laying = tp.seg_built
+    tp.arc_start = 0.0
+    memset(&tp.corner, 0, sizeof(Kink))
+    if seg.kind != TP_ARC:
+        memcpy(tp.corner.vertex, seg.start, sizeof(tp.corner.vertex))
+        memcpy(tp.corner.out, seg.rate, sizeof(tp.corner.out))
+        _add_kink(tp, &tp.corner)
+    _join(tp, seg)
 
 
-cdef void command_smoothed(TpState* tp) noexcept nogil:
-    """Take the planned position of this period, and command the average of the last ones."""
-    cdef const double* newest = tp.recent[tp.slot]
-    cdef double total
-    cdef int i, k, moved = 0
-    for i in range(AXES):
-        moved |= newest[i] != tp.planned[i]
-    tp.lag = tp.window - 1 if moved else tp.lag - (tp.lag > 0)
-    tp.slot = (tp.slot + 1) % tp.window
-    memcpy(tp.recent[tp.slot], tp.planned, sizeof(tp.planned))
-    if tp.lag == 0:
-        command_planned(tp)
+cdef void _go_round(TpState* tp) noexcept nogil:
+    """Go on behind the corner that is decided."""
+    if tp.crowded and tp.corner.sharpness > 0.0:
+        _add_on_grid(tp)
+    else:
+        _add_kink(tp, &tp.corner)
+    _join(tp, _seg(tp, tp.seg_built))
+
+
+cdef void _add_kink(TpState* tp, const Kink* kink) noexcept nogil:
+    tp.kinks[tp.kink_tail % KINKS] = kink[0]
+    tp.kink_tail += 1
+
+
+cdef void _join(TpState* tp, Segment* seg) noexcept nogil:
+    """Let a segment be the last of the chain; its begin and pace are known."""
+    cdef double half = tp.corner.to - tp.corner.place
+    cdef int k
+    tp.seg_built += 1
+    tp.body_goal = seg.begin + _way(seg)
+    tp.end = END_OPEN
+    tp.hold = fmax(0.5 * _way(seg), 2.0 * half)
+    if seg.kind != TP_ARC:
         return
+    tp.arc_open = 1
+    tp.arc_step = fmin(ARC_STEP / fabs(seg.omega * seg.pace), 0.25 * _way(seg))
+    tp.hold = fmin(tp.hold, fmax(2.0 * half, OPEN_STEPS * tp.arc_step))
+    for k in range(KNOTS - 1):
+        tp.knots[k] = seg.begin + (k - KNOTS + 2) * tp.arc_start
+    tp.knots[KNOTS - 1] = seg.begin + fmin(tp.arc_step, tp.arc_start if tp.arc_start > 0.0 else tp.arc_step)
+
+
+# --- corners ----------------------------------------------------------------------------------------------------------
+
+cdef void _decide_end(TpState* tp, int* urgent) noexcept nogil:
+    """Decide how the last segment of the chain ends, when that is known, or cannot wait."""
+    cdef const Segment* a = _seg(tp, tp.seg_built - 1)
+    cdef double sharpness, tolerance
+    cdef int parts
+    if tp.seg_built == tp.seg_tail:
+        if urgent[0] and tp.raw_next == tp.raw_tail and _laid_out(tp):
+            tp.hold *= 0.5 if tp.w > 0.0 else 0.1
+            urgent[0] = 0
+            if tp.hold < LAST_HOLD or tp.arc_open:
+                _stop(tp)
+        return
+    if must_stop(a, _seg(tp, tp.seg_built)):
+        _stop(tp)
+        return
+    if tp.seg_tail - tp.seg_built < NEIGHBOURS and not urgent[0]:
+        return
+    _aim(tp, a, _seg(tp, tp.seg_built))
+    sharpness = tp.corner.sharpness
+    tolerance = corner_tolerance(a, _seg(tp, tp.seg_built), sharpness)
+    if sharpness > TANGENT and tolerance == 0.0:
+        _stop(tp)
+        return
+    if a.term != TP_TERM_BLEND and sharpness <= TANGENT:
+        tolerance = EXACT_ROUNDING
+    parts = (a.kind == TP_ARC) + (_seg(tp, tp.seg_built).kind == TP_ARC) + (sharpness > TANGENT)
+    tp.arc_end = _end_spacing(tp, a, a.length, tolerance / parts) if a.kind == TP_ARC else 0.0
+    tp.arc_start = _end_spacing(tp, _seg(tp, tp.seg_built), 0.0, tolerance / parts) if _seg(tp, tp.seg_built).kind == TP_ARC else 0.0
+    if sharpness <= TANGENT or _round(tp, a, _seg(tp, tp.seg_built), tolerance / parts) or _committed(tp):
+        tp.end = END_CORNER
+    else:
+        _stop(tp)
+
+
+cdef int _committed(TpState* tp) noexcept nogil:
+    """Whether corners before bend the path here already, so that it cannot end: then this one is passed, however slowly."""
+    cdef double least = LEAST_HAT * fmin(_way(_seg(tp, tp.seg_built - 1)), _way(_seg(tp, tp.seg_built)))
+    cdef int64_t k
+    for k in range(tp.kink_head, tp.kink_tail):
+        if tp.kinks[k % KINKS].to > tp.body_goal + SAME_PLACE:
+            if tp.corner.to < tp.corner.place + least:
+                tp.corner.start = tp.corner.place - least
+                tp.corner.to = tp.corner.place + least
+                tp.crowded = 0
+            return 1
+    return 0
+
+
+cdef int _laid_out(const TpState* tp) noexcept nogil:
+    """Whether no more can be laid before the end is decided."""
+    if tp.arc_open:
+        return tp.body_goal - tp.knots[KNOTS - 1] < OPEN_STEPS * tp.arc_step
+    return tp.body_end > tp.body_goal - tp.hold - SAME_PLACE
+
+
+cdef void _stop(TpState* tp) noexcept nogil:
+    tp.end = END_STOP
+    tp.arc_end = 0.0
+
+
+cdef void _aim(TpState* tp, const Segment* a, Segment* b) noexcept nogil:
+    """Fill in the corner between two segments, but for its hat; and where and how fast the later one runs."""
+    cdef Kink* corner = &tp.corner
+    cdef double t1[AXES]
+    cdef double t2[AXES]
+    cdef double unused[AXES]
+    cdef int i
+    derivatives(a, a.length, t1, unused)
+    derivatives(b, 0.0, t2, unused)
+    b.begin = tp.body_goal
+    b.pace = a.pace * corner_ratio(a, b, t1, t2)
     for i in range(AXES):
-        total = 0.0
-        for k in range(tp.window):
-            total += tp.recent[k][i] - tp.planned[i]
-        tp.pos[i] = tp.planned[i] + total / tp.window
+        corner.out[i] = b.pace * t2[i]
+        corner.turn[i] = corner.out[i] - a.pace * t1[i]
+        corner.vertex[i] = b.start[i]
+    corner.place = corner.start = corner.middle = corner.to = tp.body_goal
+    corner.sharpness = length(corner.turn)
+    if corner.sharpness <= TANGENT:
+        memset(corner.turn, 0, sizeof(corner.turn))
+        corner.sharpness = 0.0
+
+
+cdef double _end_spacing(const TpState* tp, const Segment* arc, double u, double tolerance) noexcept nogil:
+    """Spacing of the knots about an end of an arc."""
+    cdef double dq[AXES]
+    cdef double ddq[AXES]
+    cdef double curvature = 0.0, speed, spacing = 0.0
+    cdef int i
+    derivatives(arc, u, dq, ddq)
+    speed = SPEED_RESERVE * fmin(arc.vel, arc.vel_max)
+    for i in range(AXES):
+        curvature += ddq[i] * ddq[i]
+        spacing = fmax(spacing, ARC_END_TWIST * fabs(ddq[i]) * speed * speed * speed / tp.jmax[i])
+    spacing = fmin(WIDER * spacing / arc.pace, 0.25 * _way(arc))
+    spacing = fmin(spacing, 0.25 * _way(_seg(tp, tp.seg_built - (u == 0.0))))
+    if u > 0.0:
+        spacing = fmin(spacing, 0.25 * _seg(tp, tp.seg_built).length / _seg(tp, tp.seg_built).pace)
+    else:
+        spacing = fmin(spacing, 0.5 * (tp.body_goal - tp.body_end))
+    return fmin(spacing, sqrt(tolerance / (ARC_END_MISS * sqrt(curvature))) / arc.pace)
+
+
+cdef int _round(TpState* tp, const Segment* a, const Segment* b, double tolerance) noexcept nogil:
+    """Give the corner its hat; 0 where it is passed more slowly than after a stop."""
+    cdef Kink* corner = &tp.corner
+    cdef double before[AXES]
+    cdef double speed = SPEED_RESERVE * fmin(fmin(a.vel, a.vel_max) / a.pace, fmin(b.vel, b.vel_max) / b.pace)
+    cdef double widest = half_for_speed(tp, corner.turn, speed)
+    cdef int i
+    widest *= SLIGHTLY_WIDER if corner.sharpness < SLIGHT else WIDER
+    if tolerance == INFINITY:
+        widest = fmin(widest, 0.5 * fmin(_way(a), _way(b)))
+    if a.kind == TP_ARC:
+        widest = fmin(widest, _way(a))
+    if b.kind == TP_ARC:
+        widest = fmin(widest, _way(b))
+    widest = fmin(widest, fmin(corner.place - tp.arc_ended, corner.place - tp.body_end))
+    tp.crowded = 0
+    widest = _fair(tp, a, b, tolerance, widest)
+    size_corner(tp, corner, tolerance, widest)
+    if tp.crowded:
+        _lay_grid(tp, (corner.to - corner.place) / (1.0 + 1.0 / GRID_STEPS))
+    for i in range(AXES):
+        before[i] = corner.out[i] - corner.turn[i]
+    return corner.to > corner.place and corner_speed(tp, corner.turn, corner.to - corner.place) >= fmax(
+        first_speed(tp, before), first_speed(tp, corner.out)
+    )
+
+
+cdef double _fair(TpState* tp, const Segment* a, const Segment* b, double tolerance, double widest) noexcept nogil:
+    """Half-width with which this corner and its neighbours, were they as wide, would keep the tolerance."""
+    cdef double turn[NEIGHBOURS][AXES]
+    cdef double away[NEIGHBOURS]
+    cdef double off[AXES]
+    cdef double distance = 0.0, half, used, sharpness, allowed
+    cdef const Segment* seg = b
+    cdef const Segment* following
+    cdef int64_t index = tp.seg_built
+    cdef int n = 0, k, i
+    while b.kind != TP_ARC and n < NEIGHBOURS:              # the corners that follow
+        distance += seg.length / b.pace
+        index += 1
+        if index >= tp.seg_tail:
+            break
+        following = _seg(tp, index)
+        if must_stop(seg, following) or seg.unit != following.unit or following.kind == TP_ARC:
+            break
+        sharpness = 0.0
+        for i in range(AXES):
+            sharpness += (following.rate[i] - seg.rate[i]) ** 2
+        allowed = corner_tolerance(seg, following, sqrt(sharpness))
+        if allowed < MUCH_LESS * tolerance:
+            break
+        tolerance = fmin(tolerance, allowed)
+        away[n] = distance
+        for i in range(AXES):
+            turn[n][i] = b.pace * (following.rate[i] - seg.rate[i])
+        n += 1
+        seg = following
+    if b.kind != TP_ARC:
+        widest = fmin(widest, distance)
+    half = fmin(widest, reach_back(tp, NEIGHBOURS))
+    for k in range(FITTINGS):
+        taken(tp, tp.corner.place, off)
+        for i in range(AXES):
+            off[i] += hat_off(tp.corner.turn[i], half, 0.0)
+        for index in range(n):
+            for i in range(AXES):
+                off[i] += hat_off(turn[index][i], half, away[index])
+        used = length(off)
+        if used <= FAIR_SHARE * tolerance:
+            break
+        half *= fmax(0.5, 0.99 * sqrt(FAIR_SHARE * tolerance / used))
+    tp.crowded = (n > 0 and away[0] < half) or 0.0 < corner_back(tp, 0) < half
+    return half
+
+
+cdef void _lay_grid(TpState* tp, double half) noexcept nogil:
+    """Choose the grid that the hats of a crowd of corners end and have their tops on: that of the corner before, if it fits."""
+    cdef double step = half / GRID_STEPS
+    if tp.grid_step > step or tp.grid_step * GRID_WIDER < step or tp.corner.place - tp.grid_used > GRID_STEPS * tp.grid_step:
+        tp.grid_step = step
+        tp.grid_begin = tp.corner.place
+    tp.grid_used = tp.corner.place
+    tp.corner.start = fmax(0.0, tp.corner.place - (GRID_STEPS + 1) * tp.grid_step)
+
+
+cdef void _add_on_grid(TpState* tp) noexcept nogil:
+    """Share a corner among two places of the grid, each with a hat, so that area and centre of gravity stay the same."""
+    cdef const Kink* corner = &tp.corner
+    cdef Kink part = corner[0]
+    cdef double step = tp.grid_step, number = floor((corner.place - tp.grid_begin) / step)
+    cdef double share = (corner.place - tp.grid_begin) / step - number
+    cdef int i, k
+    for k in range(2):
+        part.place = part.middle = tp.grid_begin + (number + k) * step
+        part.start = tp.grid_begin + (number + k - GRID_STEPS) * step
+        part.to = tp.grid_begin + (number + k + GRID_STEPS) * step
+        part.sharpness = share * corner.sharpness if k else -(1.0 - share) * corner.sharpness
+        for i in range(AXES):
+            part.turn[i] = (share if k else 1.0 - share) * corner.turn[i]
+            part.out[i] = corner.out[i] - (0.0 if k else share) * corner.turn[i]
+            part.vertex[i] = corner.vertex[i] + (part.place - corner.place) * (corner.out[i] - (0.0 if k else corner.turn[i]))
+        if k == 0 or share > 0.0:
+            _add_kink(tp, &part)
+
+
+# --- arcs -------------------------------------------------------------------------------------------------------------
+
+cdef void _arc_point(const TpState* tp, const Segment* arc, const double* knots, double* q) noexcept nogil:
+    """Control point of a cubic spline for three knots: exact for parabolas, along the arc and its tangents beyond."""
+    cdef double dq[AXES]
+    cdef double ddq[AXES]
+    cdef double place = (knots[0] + knots[1] + knots[2]) / 3.0
+    cdef double spread = (
+        (knots[1] - knots[0]) ** 2 + (knots[2] - knots[1]) ** 2 + (knots[2] - knots[0]) ** 2) / 18.0
+    cdef double u = (place - arc.begin) * arc.pace, least = SAME_PLACE * arc.length, weight = 1.0
+    cdef int i
+    if u < least:
+        weight = 0.5 if u > -least else 0.0
+    elif u > arc.length - least:
+        weight = 0.5 if u < arc.length + least else 0.0
+    weight *= -0.5 * spread * arc.pace * arc.pace
+    derivatives(arc, fmax(0.0, fmin(arc.length, u)), dq, ddq)
+    position(arc, fmax(0.0, u), q)
+    for i in range(AXES):
+        q[i] += weight * ddq[i]
+        if u < 0.0:
+            q[i] += u * dq[i]
+        elif u > arc.length:
+            q[i] += (u - arc.length) * dq[i]
+
+
+cdef int _spline_arc(TpState* tp) noexcept nogil:
+    """Add the next kink of the open arc; 0 where that must wait for the decision on its end."""
+    cdef const Segment* arc = _seg(tp, tp.seg_built - 1)
+    cdef const double* k = tp.knots
+    cdef double before[AXES]
+    cdef double behind[AXES]
+    cdef double unused[AXES]
+    cdef double length, next_length, end = tp.body_goal
+    cdef Kink kink
+    cdef int i, done
+    if tp.end == END_OPEN and _laid_out(tp):
+        return 0
+    kink.sharpness = 0.0
+    kink.start, kink.middle, kink.to = k[1], k[2], k[3]
+    kink.place = (k[1] + k[2] + k[3]) / 3.0
+    done = k[2] >= end - SAME_PLACE and (tp.arc_end == 0.0 or k[1] >= end - SAME_PLACE)
+    _arc_point(tp, arc, k, before)
+    _arc_point(tp, arc, k + 1, kink.vertex)
+    _arc_point(tp, arc, k + 2, behind)
+    length = (k[3] - k[0]) / 3.0
+    next_length = (k[4] - k[1]) / 3.0
+    if done and tp.arc_end > 0.0:
+        derivatives(arc, arc.length, kink.out, unused)
+        for i in range(AXES):
+            kink.out[i] *= arc.pace
+    else:
+        for i in range(AXES):
+            kink.out[i] = (behind[i] - kink.vertex[i]) / next_length
+    for i in range(AXES):
+        kink.turn[i] = kink.out[i] - (kink.vertex[i] - before[i]) / length if length > 0.0 else 0.0
+    _add_kink(tp, &kink)
+    if done:
+        tp.arc_open = 0
+        tp.arc_ended = end
+        return 1
+    for i in range(KNOTS - 1):
+        tp.knots[i] = tp.knots[i + 1]
+    tp.knots[KNOTS - 1] = _next_knot(tp, end)
+    return 1
+
+
+cdef double _next_knot(const TpState* tp, double end) noexcept nogil:
+    """Knots grow apart from the start of an arc on, and come together towards its end."""
+    cdef double last = tp.knots[KNOTS - 2], left = end - last
+    cdef double step = fmin(KNOT_GROWTH * (last - tp.knots[KNOTS - 3]), tp.arc_step)
+    if left <= SAME_PLACE:
+        return last + tp.arc_end if tp.arc_end > 0.0 else end
+    if step <= 0.0:
+        step = tp.arc_step
+    if tp.end != END_OPEN and tp.arc_end > 0.0:
+        step = fmin(step, fmax(tp.arc_end, 0.5 * (left + tp.arc_end)))
+    return end if left < 1.5 * step else last + step
+
+
+# --- spans ------------------------------------------------------------------------------------------------------------
+
+cdef double _safe(const TpState* tp) noexcept nogil:
+    """Way up to which no kink can come any more."""
+    cdef double limit = tp.body_goal
+    if tp.end == END_OPEN:
+        limit -= tp.hold
+    elif tp.end == END_CORNER:
+        limit = fmin(tp.corner.start, limit - 2.0 * tp.arc_start)
+    if tp.arc_open:
+        limit = fmin(limit, tp.knots[1])
+    return limit
+
+
+cdef int _alike(const Segment* a, const Segment* b) noexcept nogil:
+    """Whether a span may be of both segments: the same feed, and what acts on it."""
+    return (
+        a.vel == b.vel and a.vel_max == b.vel_max and a.acc == b.acc and a.enables == b.enables and a.unit == b.unit
+        and a.motion_type == b.motion_type and a.spindle == b.spindle and a.sync_revs == b.sync_revs
+    )
+
+
+cdef int _lay(TpState* tp) noexcept nogil:
+    """Lay the next span; 0 where there is none to lay."""
+    cdef double begin = tp.body_end, end, limit = _safe(tp)
+    cdef const Segment* seg
+    cdef int64_t k
+    if tp.seg_built <= tp.seg_head or tp.kink_tail == tp.kink_head or limit <= begin + SAME_PLACE:
+        return 0
+    while tp.laying + 1 < tp.seg_built and _seg(tp, tp.laying + 1).begin <= begin + SAME_PLACE:
+        tp.laying += 1
+    seg = _seg(tp, tp.laying)
+    end = next_node(tp, limit)
+    k = tp.laying + 1
+    while k < tp.seg_built and _seg(tp, k).begin < end - SAME_PLACE:
+        if not _alike(seg, _seg(tp, k)):
+            end = _seg(tp, k).begin
+        k += 1
+    if begin == 0.0:
+        path_at(tp, 0.0, SIDE_BEHIND, tp.node[0], tp.node[1], tp.node[2])
+        memcpy(tp.node[0], seg.start, sizeof(tp.node[0]))
+        tp.slow_place = tp.slow_speed = 0.0
+    if seg.kind != TP_TAP:
+        end = begin + piece(tp, seg, begin, end - begin)
+    if tp.end == END_STOP and end > tp.body_goal - SAME_PLACE:
+        end = tp.body_goal
+    _add_span(tp, seg, begin, end)
+    forget_passed(tp)
+    return 1
+
+
+cdef void _add_span(TpState* tp, const Segment* seg, double begin, double end) noexcept nogil:
+    """Lay the path from one place to another, or less of it where it, or a joint, bends too much."""
+    cdef double q[3][AXES]
+    cdef Span* span = new_span(
+        tp, SPAN_LINE if seg.kind == TP_TAP else SPAN_CUBIC, tp.laying, begin, end - begin)
+    cdef Curve curve
+    cdef double shorter
+    cdef int step
+    if seg.acc > 0.0:
+        span.acc = seg.acc / seg.pace
+    curve.cubic = span
+    curve.before = NULL
+    curve.seg = seg
+    for step in range(SHORTENINGS):
+        path_at(tp, end, SIDE_BEFORE, q[0], q[1], q[2])
+        if tp.end == END_STOP and end == tp.body_goal:
+            memcpy(q[0], _seg(tp, tp.seg_built - 1).end, sizeof(q[0]))
+            span.stop = 1
+        memcpy(span.q0, tp.node[0], sizeof(span.q0))
+        memcpy(span.q1, q[0], sizeof(span.q1))
+        span.tight = 1.0
+        limit_speed(tp, span, tp.node[1], q[1], seg.vel_max, seg.unit)
+        keep_derivatives(span, tp.node[1], q[1], tp.node[2], q[2])
+        curve.length = span.h
+        if tp.inverse != NULL:
+            add_joints(tp, &curve, span)
+        shorter = fmin(1.0, MOST_TURN / turn(span))
+        if span.tight < 1.0 - JOINT_MISS:
+            shorter = fmin(shorter, 0.5)
+        if shorter == 1.0 or step + 1 == SHORTENINGS:
+            break
+        end = begin + shorter * (end - begin)
+        span.h = end - begin
+        span.stop = 0
+    limit_cubic(tp, span)
+    if span.steady * span.steady < tp.slow_speed * tp.slow_speed + span.push * (end - tp.slow_place):
+        tp.slow_speed = span.steady
+        tp.slow_place = end
+    memcpy(tp.node, q, sizeof(q))
+    tp.body_end = end

@@ -16,8 +16,8 @@ cdef double DECAY = 0.1          # share of the position error that one servo pe
 
 
 cdef int at_rest(const TpState* tp) noexcept nogil:
-    """Whether the machine stands, tapping or not, and has arrived where it was planned to."""
-    return tp.w == 0.0 and tp.tap_v == 0.0 and tp.lag == 0
+    """Whether the machine stands, tapping or not."""
+    return tp.w == 0.0 and tp.tap_v == 0.0
 
 
 cdef int tap(TpState* tp, const Segment* seg) noexcept nogil:

@@ -12,7 +12,7 @@ from libc.string cimport memcpy, memset
 from emcmot.tp.advance cimport advance
 from emcmot.tp.geometry cimport norm, shape
 from emcmot.tp.merge cimport can_join
-from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, LIMITED, SPAN_BLEND, TAP_OUT, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, BACK_RING, CHAIN_WAITING, LIMITED, SPAN_BLEND, TAP_OUT, Cell, Segment, Span, TpState
 from emcmot.tp.progress cimport current_id, current_raw, current_segment
 from emcmot.tp.reverse cimport turn_back, turn_forward
 from emcmot.tp.smooth cimport choose_smoothing
@@ -71,14 +71,15 @@ cdef Tp* tp_create(int queue_size) noexcept nogil:
     s.segs = <Segment*>_ring(SEGMENT_RING, sizeof(Segment))
     s.spans = <Span*>_ring(SPAN_RING, sizeof(Span))
     s.back_spans = <Span*>_ring(BACK_RING, sizeof(Span))
-    if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL or s.back_spans == NULL:
+    s.cells = <Cell*>_ring(SPAN_RING, sizeof(Cell))
+    s.cell_mask = SPAN_RING - 1
+    if s.raws == NULL or s.ios == NULL or s.segs == NULL or s.spans == NULL or s.back_spans == NULL or s.cells == NULL:
         tp_free(<Tp*>s)
         return NULL
     s.dt = 0.001
     for i in range(LIMITED):
         s.vmax[i] = s.amax[i] = s.jmax[i] = INFINITY
-    s.window = 1
-    s.feed_scale = s.rapid_scale = s.adaptive_scale = 1.0
+    s.feed_scale = s.rapid_scale = s.adaptive_scale = s.rate_limit = 1.0
     s.sweep = s.held_span = s.looking = -1
     return <Tp*>s
 
@@ -92,6 +93,7 @@ cdef void tp_free(Tp* tp) noexcept nogil:
     free(s.segs)
     free(s.ahead_spans if s.reversing else s.spans)
     free(s.back_spans)
+    free(s.cells)
     free(s)
 
 
@@ -130,7 +132,7 @@ cdef void tp_set_joints(
 
 
 cdef inline int _idle(const TpState* s) noexcept nogil:
-    return s.active >= s.span_tail and s.raw_next >= s.raw_tail and s.seg_built >= s.seg_tail and s.lag == 0
+    return s.active >= s.span_tail and s.raw_next >= s.raw_tail and s.seg_built >= s.seg_tail
 
 
 cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
@@ -143,7 +145,6 @@ cdef int tp_set_pos(Tp* tp, const double* pos) noexcept nogil:
         if not isfinite(pos[i]):
             return TP_BAD
     memcpy(s.pos, pos, sizeof(s.pos))
-    memcpy(s.planned, pos, sizeof(s.pos))
     memcpy(s.goal, pos, sizeof(s.goal))
     memset(s.vel, 0, sizeof(s.vel))
     s.history = s.span_tail
@@ -171,7 +172,7 @@ cdef int tp_add(Tp* tp, const TpSegment* given, const TpIo* io) noexcept nogil:
     if seg.length < SHORTEST_MOVE:
         return TP_OK
     if _idle(s):
-        choose_smoothing(s, given.tolerance if given.term == TP_TERM_BLEND else 0.0)
+        choose_smoothing(s)
     seg.motion_type = given.motion_type
     seg.term = given.term
     seg.enables = given.enables

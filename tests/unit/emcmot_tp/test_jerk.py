@@ -41,7 +41,15 @@ def test_a_long_move_reaches_the_acceleration_limit_and_arrives_exactly():
 def test_straight_moves_between_stops_use_the_jerk_fully():
     program = jerk_limited(term=TERM_STOP).line(100, 0, 0).line(100, 100, 0).line(0, 100, 0)
     report = checked(program, program.run(), 0.0)
-    assert report.worst_jerk > 0.99
+    assert report.worst_jerk > 0.96  # overrides need what is left, to begin
+
+
+def test_short_moves_along_a_curve_are_hardly_slower_than_one_straight_move():
+    program = jerk_limited(tolerance=0.01)
+    for angle in 0.001 * np.arange(1, 1201):
+        program.line(50 * np.cos(angle) - 50, 50 * np.sin(angle), vel=60.0)
+    report = checked(program, program.run(), 0.01)
+    assert report.seconds < 1.06 * (60 / 60 + 60 / 500 + 500 / JERK)
 
 
 def test_a_corner_that_smoothing_would_crawl_round_is_a_stop():
@@ -116,7 +124,7 @@ def test_a_feed_override_changes_the_speed_within_the_jerk_limit():
         program.planner.feed_scale(scale)
         parts.append(program.planner.step(600))
         speed = (parts[-1][-1, 0] - parts[-1][-2, 0]) / DT
-        assert speed == pytest.approx(60.0 * scale, abs=1e-3)
+        assert speed == pytest.approx(60.0 * scale, rel=2e-3, abs=1e-9)
     parts.append(program.run())
     assert checked(program, np.concatenate(parts), 0.0).end == 0.0
 

@@ -1,0 +1,5 @@
+from emcmot.tp.model cimport TpState
+
+
+cdef void forget_plan(TpState* tp) noexcept nogil
+cdef void plan_ahead(TpState* tp) noexcept nogil
