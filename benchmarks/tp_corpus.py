@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The trajectory planner over a corpus: machining time beside the time-optimal bound, worst violations, and cost.
 
-    python benchmarks/tp_corpus.py [--only NAME ...] [--no-verify]
+    python benchmarks/tp_corpus.py [--only NAME ...] [--no-verify] [--jerk MM_PER_S3]
 
 The bound is a linear program over the squared path speed on the ideal curve (scipy), for the jobs that have one; it
 knows nothing of the planner. A planner that uses its tolerance can be a little below it: the path gets shorter.
+With a limit of jerk it is a row of linear programs, each about the speeds of the one before.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ DT = 0.001
 VMAX = np.array([100.0] * 3 + [90.0] * 3 + [50.0] * 3)
 AMAX = np.array([500.0] * 3 + [400.0] * 3 + [250.0] * 3)
 CURVE_POINTS = 4001  # of the bound's grid
+JERK_PROGRAMS = 10
 CHECKED_POSITIONS = 2000  # positions of a job that are compared with its path; velocity and acceleration: all
 
 
@@ -151,41 +153,57 @@ CORPUS = [
 ]  # fmt: skip
 
 
-def bound(job: Job) -> float:
-    """Least time on the ideal curve, from rest to rest, by a linear program; lead-ins as straight moves at rest."""
+def bound(job: Job, jerk: float = 0.0) -> float:
+    """Least time on the ideal curve, from rest to rest; lead-ins as straight moves at rest."""
     from scipy.optimize import linprog
-    from scipy.sparse import coo_matrix, vstack
+    from scipy.sparse import diags, vstack
 
     assert job.curve is not None
-    s = np.linspace(0, 1, CURVE_POINTS)
+    n = CURVE_POINTS
+    s = np.linspace(0, 1, n)
     q = job.curve(s)
     h = s[1] - s[0]
     axes = q.shape[1]
     d1 = np.gradient(q, h, axis=0, edge_order=2)
     d2 = np.gradient(d1, h, axis=0, edge_order=2)
+    d3 = np.gradient(d2, h, axis=0, edge_order=2)
     speed = np.linalg.norm(d1[:, :3], axis=1)
     cap = np.minimum((job.feed / speed) ** 2, np.min((VMAX[:axes] / np.maximum(np.abs(d1), 1e-12)) ** 2, axis=1))
     cap[0] = cap[-1] = 0.0
-    n = CURVE_POINTS
-    middle = np.arange(n - 1)
-    rows = []
-    for axis in range(axes):
-        first = 0.5 * (d1[:-1, axis] + d1[1:, axis]) / (2 * h)
-        second = 0.25 * (d2[:-1, axis] + d2[1:, axis])
-        rows.append(
-            coo_matrix(
-                (np.concatenate([second - first, second + first]), (np.tile(middle, 2), np.append(middle, middle + 1))),
-                shape=(n - 1, n),
-            )
-        )
-    matrix = vstack([*rows, *[-row for row in rows]])
-    limits = np.tile(np.repeat(AMAX[:axes], n - 1), 2)
     scale = cap.max()
-    box = np.column_stack([0 * cap, cap / scale])
-    solved = linprog(-np.ones(n), A_ub=matrix, b_ub=limits / scale, bounds=box, method="highs-ipm")
-    v = np.sqrt(np.maximum(solved.x, 0) * scale)
-    seconds = float(np.sum(2 * h / np.maximum(v[1:] + v[:-1], 1e-9)))
-    return seconds + lead_in(q[0])
+    between = (0.5 * (d1[:-1] + d1[1:]), 0.5 * (d2[:-1] + d2[1:]))
+    mean = diags([0.5, 0.5], [0, 1], shape=(n - 1, n))
+    slope = diags([-0.5 / h, 0.5 / h], [0, 1], shape=(n - 1, n))
+    rows = vstack([diags(between[0][:, a]) @ slope + diags(between[1][:, a]) @ mean for a in range(axes)])
+    here = diags([1.0], [1], shape=(n - 2, n))
+    first = diags([-0.5 / h, 0.5 / h], [0, 2], shape=(n - 2, n))
+    second = diags([1 / h**2, -2 / h**2, 1 / h**2], [0, 1, 2], shape=(n - 2, n))
+    inner = slice(1, -1)
+    bends = vstack(
+        [
+            diags(d3[inner, a]) @ here + diags(1.5 * d2[inner, a]) @ first + diags(0.5 * d1[inner, a]) @ second
+            for a in range(axes)
+        ]
+    )
+    most = np.repeat(AMAX[:axes], n - 1) / scale
+    matrix, limits, cost, best = vstack([rows, -rows]), np.tile(most, 2), -np.ones(n), math.inf
+    for number in range(JERK_PROGRAMS if jerk else 1):
+        box = np.column_stack([0 * cap, cap / scale])
+        solved = linprog(cost, A_ub=matrix.tocsr(), b_ub=limits, bounds=box, method="highs-ipm")
+        if solved.x is None:
+            break
+        w = np.maximum(solved.x, 0) * scale
+        v = np.sqrt(w)
+        seconds = float(np.sum(2 * h / np.maximum(v[1:] + v[:-1], 1e-9)))
+        if number > 0 or not jerk:  # the first knows no jerk
+            best = min(best, seconds)
+        w = np.maximum(w, 1e-5 * scale)
+        near = w[inner]
+        leaning = vstack([diags(0.5 * jerk / near**1.5) @ here] * axes)
+        matrix = vstack([rows, -rows, bends + leaning, leaning - bends])
+        limits = np.concatenate([most, most, np.tile(1.5 * jerk / np.sqrt(near) / scale, 2 * axes)])
+        cost = -1 / np.maximum(w / scale, 1e-4) ** 1.5
+    return best + lead_in(q[0])
 
 
 def lead_in(to: Array) -> float:
@@ -200,11 +218,12 @@ def lead_in(to: Array) -> float:
     return length / v + v / a if length > v * v / a else 2 * math.sqrt(length / a)
 
 
-def run(job: Job) -> tuple[Array, float, float]:
-    """Positions, and seconds of processor time for adding and for the periods."""
+def run(job: Job, jerk: float = 0.0) -> tuple[Array, float, float]:
+    """Positions, and seconds of processor time for adding and for the periods; `jerk` in mm/s^3, 0: no limit."""
     planner = Planner(DT, 2000)
+    planner.limit_jerk(jerk > 0.0)
     for axis in range(9):
-        planner.set_limits(axis, VMAX[axis], AMAX[axis])
+        planner.set_limits(axis, VMAX[axis], AMAX[axis], jerk)
     at = np.zeros(9)
     calls = []
     for number, move in enumerate(job.moves, 1):
@@ -236,23 +255,27 @@ def run(job: Job) -> tuple[Array, float, float]:
 def main() -> None:
     options = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     options.add_argument("--only", nargs="*", default=[], help="names, or parts of them")
+    options.add_argument("--jerk", type=float, default=0.0, help="limit of the third derivative, of each axis")
     options.add_argument("--no-verify", action="store_true", help="times and costs only")
     chosen = options.parse_args()
     table = Table(
-        "job", "moves", "time s", "bound s", "of bound", "velocity", "acceleration", "error / P", "us/period", "us/add"
-    )
+        "job", "moves", "time s", "bound s", "of bound", "velocity", "acceleration", "jerk", "error / P",
+        "us/period", "us/add",
+    )  # fmt: skip
     for make in CORPUS:
         job = make()
         if chosen.only and not any(part in job.name for part in chosen.only):
             continue
-        positions, adding, stepping = run(job)
+        positions, adding, stepping = run(job, chosen.jerk)
         seconds = len(positions) * DT
-        best = bound(job) if job.curve else 0.0
-        checked = ["", "", ""]
+        best = bound(job, chosen.jerk) if job.curve else 0.0
+        checked = ["", "", "", ""]
         if not chosen.no_verify:
             stride = max(1, len(positions) // CHECKED_POSITIONS)
-            r = verify(positions, job.path, VMAX, AMAX, DT, job.tolerance, stride)
-            checked = [f"{r.worst_velocity:.6f}", f"{r.worst_acceleration:.6f}", f"{r.deviation / job.tolerance:.3f}"]
+            jmax = np.full(9, chosen.jerk or math.inf)
+            r = verify(positions, job.path, VMAX, AMAX, DT, job.tolerance, stride, jmax)
+            worst = (r.worst_velocity, r.worst_acceleration, r.worst_jerk)
+            checked = [*(f"{share:.6f}" for share in worst), f"{r.deviation / job.tolerance:.3f}"]
         compared = [f"{best:.3f}", f"{seconds / best:.3f}"] if best else ["", ""]
         table.add_row(
             job.name, str(len(job.moves)), f"{seconds:.3f}", *compared, *checked,

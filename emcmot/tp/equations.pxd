@@ -1,3 +1,5 @@
+"""The equations for the speed plan."""
+
 from libc.stdint cimport int64_t
 
 from emcmot.tp.model cimport TpState

@@ -19,7 +19,8 @@ from emcmot.tp.model cimport (
     TpState,
 )
 
-cdef double DECAY = 0.1          # share of the position error that one servo period corrects
+cdef double DECAY = 0.1          # share of the position error that one servo period corrects,
+cdef double SMOOTH_DECAY = 0.25  # and that is corrected in the time in which an acceleration comes and goes
 
 
 cdef int follows_position(const Segment* seg) noexcept nogil:
@@ -64,8 +65,19 @@ cdef double _lead(TpState* tp, const Segment* seg) noexcept nogil:
         tp.chain = CHAIN_FOLLOWING
         tp.chain_origin = turned - tp.chain_revs
     error = turned - tp.chain_origin - tp.chain_revs
-    correction = fmin(DECAY * fabs(error) / tp.dt, sqrt(fabs(error) * _acceleration(tp, seg) / seg.sync_revs))
+    correction = fmin(_decay(tp, seg) * fabs(error), sqrt(fabs(error) * _acceleration(tp, seg) / seg.sync_revs))
     return fmax(0.0, rps + (correction if error > 0.0 else -correction))
+
+
+cdef double _decay(const TpState* tp, const Segment* seg) noexcept nogil:
+    """How fast errors decay, 1/s: where jerk is limited, more slowly than accelerations come and go."""
+    cdef double decay = DECAY / tp.dt
+    cdef int i
+    if tp.smooth:
+        for i in range(AXES):
+            if seg.rate[i] != 0.0:
+                decay = fmin(decay, SMOOTH_DECAY * tp.jmax[i] / tp.amax[i])
+    return decay
 
 
 cdef double _acceleration(const TpState* tp, const Segment* seg) noexcept nogil:

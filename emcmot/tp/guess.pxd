@@ -1,3 +1,5 @@
+"""The first guess of a speed plan."""
+
 from libc.stdint cimport int64_t
 
 from emcmot.tp.model cimport TpState

@@ -8,13 +8,15 @@ Called by interior; says for it and for equations which coefficients are those o
 from libc.math cimport INFINITY, cbrt, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 
-from emcmot.tp.model cimport Cell, Improvement, Span, TpState
+from emcmot.tp.follow cimport follows_position, follows_velocity
+from emcmot.tp.model cimport Cell, Improvement, Segment, Span, TpState
 from emcmot.tp.path cimport feed_cap, full_cap
 from emcmot.tp.profile cimport crawl, creeps, ends_at_rest, starts_at_rest
 
 cdef double SLOWEST = 0.01       # of the w that is programmed; slower overrides lower the rate only
 cdef double ROOM = 0.001         # over the feed, which plans keep a little below
 cdef double SHARED = 0.5         # of a barrier is the same for all spans
+cdef double LEAD_ROOM = 1.05     # over the speed that a spindle asks for
 cdef double GUESS_PUSH = 0.5     # of acceleration and jerk
 cdef double GUESS_SHARE = 0.8    # of w
 cdef double SPREAD = 0.3         # of the square of the way that an acceleration needs to come;
@@ -41,7 +43,12 @@ cdef int fixed(const TpState* tp, int64_t index) noexcept nogil:
 
 cdef double plan_cap(const TpState* tp, int64_t index) noexcept nogil:
     """Largest w of a span: that of the plan in force stays possible."""
-    cdef double cap = fmin((1.0 + ROOM) * fmax(feed_cap(tp, index), SLOWEST * full_cap(tp, index)), _span(tp, index).cap)
+    cdef const Span* span = _span(tp, index)
+    cdef const Segment* seg = &tp.segs[span.seg & tp.seg_mask]
+    cdef double cap = (1.0 + ROOM) * fmax(feed_cap(tp, index), SLOWEST * full_cap(tp, index))
+    if follows_position(seg) or follows_velocity(seg):
+        cap = fmin(cap, (LEAD_ROOM * fmax(1.0, tp.feed_scale) * tp.spindle_rps[seg.spindle] * seg.sync_revs / span.speed) ** 2)
+    cap = fmin(cap, span.cap)
     if tp.improvement.origin <= index < tp.planned and tp.improvement.first > tp.improvement.origin:
         cap = fmax(cap, _cell(tp, index).w)
     return fmax(cap, 4.0 * crawl(tp, index))

@@ -66,6 +66,12 @@ cdef void forget_plan(TpState* tp) noexcept nogil:
     tp.rate_limit = 1.0
 
 
+cdef void plan_anew(TpState* tp) noexcept nogil:
+    """The plan in force was changed: what is being made no longer fits it."""
+    tp.improvement.phase = IDLE
+    tp.replan = 1
+
+
 # --- what is planned --------------------------------------------------------------------------------------------------
 
 cdef void plan_ahead(TpState* tp) noexcept nogil:

@@ -1,3 +1,5 @@
+"""Motion with limited jerk."""
+
 from emcmot.tp.model cimport TpState
 
 

@@ -15,7 +15,8 @@ from libc.math cimport INFINITY, copysign, fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 
 from emcmot.tp.follow cimport count_way, follows_position, follows_velocity, spindle_speed
-from emcmot.tp.interior cimport plan_ahead
+from emcmot.tp.guess cimport plan_cap
+from emcmot.tp.interior cimport plan_ahead, plan_anew
 from emcmot.tp.model cimport Cell, Segment, Span, TpState
 from emcmot.tp.path cimport feed_cap, feed_scale
 from emcmot.tp.profile cimport Pace, after, crawl, creeps, fastest, pace, pace_time, time_to
@@ -30,13 +31,14 @@ cdef enum:
 
 cdef double ROUNDING = 4e-15     # of u, relative to the length of its span
 cdef double STANDING = 0.005     # jerk dt^2: a held machine that is no faster stands
-cdef double CLOSER = 0.3        # of the way to a higher rate: what is left there is used now
+cdef double CLOSER = 0.3         # of the way to a higher rate: what is left there is used now
 cdef double LEFT = 0.995         # of accelerations and jerks, may be used
 cdef double TURNING = 0.5        # of the jerk that the plan leaves, for the rate's change; the rest changes that change
-cdef double APPROACH = 0.5      # of that change of change, for closing in on the wanted rate: it may become less on the way
+cdef double APPROACH = 0.5       # of that change of change, for closing in on the wanted rate: it may become less on the way
 cdef double MARGIN = 0.12        # s of the plan that are looked at beyond the change of the rate
-cdef double LEAST_RATE = 0.1    # that may become a plan
+cdef double LEAST_RATE = 0.1     # that may become a plan
 cdef double MOST_RATE = 1.004     # what a change that ends late may come to; plans leave more than that
+cdef double FASTER = 1.02        # of a cap, at which a plan is made anew
 cdef double OVER = 0.002         # of the feed, at which the plan counts as too fast for it
 cdef double HUNGRY = 0.25        # s of the plan before its end, beyond what a stop takes: more path is wanted
 
@@ -135,24 +137,20 @@ cdef double _goal(TpState* tp) noexcept nogil:
     v = spindle_speed(tp, seg) * (feed_scale(tp, seg) if seg.sync_velocity else 1.0) / seg.pace
     p = pace(tp, tp.active)
     planned = sqrt(fmax(1e-30, p.w + tp.u * (p.slope + tp.u * p.bend)))
+    if v > planned and plan_cap(tp, tp.active) > FASTER * _cell(tp, tp.active).cap:
+        tp.replan = 1                        # the spindle has become faster
     return fmin(tp.rate_limit, v / planned)
 
 
-cdef double _change_rate(TpState* tp) noexcept nogil:
-    """Find the rate at the end of this period; how far the plan goes on in it."""
-    cdef double dt = tp.dt, goal = _goal(tp), gap, wanted, was = tp.rate, change, jerk, down, up
-    cdef Freedom freedom
-    if tp.rate_change == 0.0 and LEAST_RATE < tp.rate < 1.0 and tp.rate == goal == tp.rate_limit and _take_over_rate(tp):
-        return dt
-    if tp.rate_change == 0.0 and tp.rate == goal:
-        return goal * dt
+cdef double _wanted_change(const TpState* tp, double goal, Freedom* freedom) noexcept nogil:
+    """Change of the rate at the end of this period, with which the goal is reached soonest; and what is free for that."""
+    cdef double dt = tp.dt, gap = goal - tp.rate - 0.5 * tp.rate_change * dt, jerk, wanted, change, down, up
     if goal > tp.rate:                       # the higher the rate, the less is left of limits
-        freedom = _freedom(tp, tp.rate + CLOSER * (goal - tp.rate))
+        freedom[0] = _freedom(tp, tp.rate + CLOSER * (goal - tp.rate))
         jerk = 0.5 * (freedom.jerk + _freedom(tp, goal).jerk)
     else:
-        freedom = _freedom(tp, goal)
+        freedom[0] = _freedom(tp, goal)
         jerk = freedom.jerk
-    gap = goal - tp.rate - 0.5 * tp.rate_change * dt
     wanted = copysign(fmin(freedom.change, _towards(fabs(gap), APPROACH * jerk, 2.0 * dt)), gap)
     down = up = freedom.jerk
     if tp.rate_change > 0.0:
@@ -162,6 +160,18 @@ cdef double _change_rate(TpState* tp) noexcept nogil:
     change = fmax(tp.rate_change - down * dt, fmin(tp.rate_change + up * dt, wanted))
     if change * tp.rate_change < 0.0:        # what goes beyond is a change of its own
         change = fmax(-freedom.jerk * dt, fmin(freedom.jerk * dt, change))
+    return change
+
+
+cdef double _change_rate(TpState* tp) noexcept nogil:
+    """Find the rate at the end of this period; how far the plan goes on in it."""
+    cdef double dt = tp.dt, goal = _goal(tp), was = tp.rate, change
+    cdef Freedom freedom
+    if tp.rate_change == 0.0 and LEAST_RATE < tp.rate < 1.0 and tp.rate == goal == tp.rate_limit and _take_over_rate(tp):
+        return dt
+    if tp.rate_change == 0.0 and tp.rate == goal:
+        return goal * dt
+    change = _wanted_change(tp, goal, &freedom)
     tp.rate += 0.5 * (tp.rate_change + change) * dt
     tp.rate_change = change
     if fabs(goal - tp.rate) <= freedom.jerk * dt * dt * STANDING and fabs(change) <= 2.0 * STANDING * freedom.jerk * dt:
@@ -188,8 +198,7 @@ cdef int _take_over_rate(TpState* tp) noexcept nogil:
     for k in range(max(tp.plan_from, tp.active - 1), tp.planned):
         _cell(tp, k).w = fmax(share * _cell(tp, k).w, fmin(_cell(tp, k).w, crawl(tp, k)))
     tp.rate = tp.rate_limit = 1.0
-    tp.replan = 1
-    tp.improvement.phase = 0
+    plan_anew(tp)
     return 1
 
 
@@ -202,7 +211,7 @@ cdef void _limit_rate(TpState* tp) noexcept nogil:
         cap = feed_cap(tp, k)
         if w > (1.0 + OVER) * cap:
             limit = fmin(limit, cap / w)
-        if fmin(cap, _span(tp, k).cap) > 1.01 * _cell(tp, k).cap:
+        if fmin(cap, _span(tp, k).cap) > FASTER * _cell(tp, k).cap:
             tp.replan = 1
     tp.rate_limit = sqrt(limit)
 
@@ -212,7 +221,7 @@ cdef void _limit_rate(TpState* tp) noexcept nogil:
 cdef void move_smoothly(TpState* tp) noexcept nogil:
     """Move along the path for one period."""
     cdef Span* span = _span(tp, tp.active)
-    cdef double time, v, left
+    cdef double time, v
     cdef Pace p
     if tp.w == 0.0 and tp.u == 0.0 and waiting(tp):
         plan_ahead(tp)

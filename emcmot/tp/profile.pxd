@@ -1,3 +1,5 @@
+"""The speed plan as a quadratic spline."""
+
 from libc.stdint cimport int64_t
 
 from emcmot.tp.model cimport Cell, TpState

@@ -13,10 +13,11 @@ DT = 0.001
 class Lathe:
     """A planner with z moves and a spindle that turns with a given speed law."""
 
-    def __init__(self, rps):
+    def __init__(self, rps, jerk=0.0):
         self.planner = Planner(DT, 50)
+        self.planner.limit_jerk(jerk > 0.0)
         for axis in range(3):
-            self.planner.set_limits(axis, 100.0, 500.0)
+            self.planner.set_limits(axis, 100.0, 500.0, jerk)
         self.rps, self.revs, self.time = rps, 0.0, 0.0
 
     def period(self):
@@ -53,6 +54,17 @@ def test_a_thread_keeps_its_pitch_however_the_spindle_turns(rps):
     cutting = (z < -3.0) & (z > -28.0)
     error = -z[cutting] - 1.5 * revs[cutting]
     assert np.ptp(error) < 0.005
+
+
+@pytest.mark.parametrize("jerk", [50000.0, 5000.0])
+@pytest.mark.parametrize("rps", [lambda t: 10.0, lambda t: 8.0 + 2 * min(1.0, t / 3)], ids=["even", "rising"])
+def test_a_thread_keeps_its_pitch_where_jerk_is_limited(rps, jerk):
+    lathe = Lathe(rps, jerk)
+    lathe.thread(-30.0)
+    z, revs = lathe.until_done().T
+    cutting = (z < -3.0) & (z > -28.0)
+    assert np.ptp(-z[cutting] - 1.5 * revs[cutting]) < 0.03
+    assert np.abs(np.diff(z, 3)).max() <= jerk * DT**3 * (1 + 1e-6)
 
 
 def test_passes_that_begin_at_different_times_meet_in_one_groove():
