@@ -30,7 +30,7 @@ cdef enum:
     PLANNED_SPANS = 256      # at most, in one plan
     LEAST_NEW = 96           # spans that are worth a new plan
     VISITS = 480             # of spans in one period,
-    VISITS_AT_REST = 1200
+    VISITS_AT_REST = 600
     STEPS = 4                # with one barrier,
     MOST_STEPS = 40          # and in all
     MOST_CHECKS = 8
@@ -80,7 +80,7 @@ cdef void plan_ahead(TpState* tp) noexcept nogil:
     if tp.improvement.phase == IDLE and (not _is_due(tp) or not _begin(tp)):
         return
     if tp.improvement.first > tp.improvement.origin and tp.active + 1 >= tp.improvement.first:
-        tp.improvement.phase = IDLE          # the machine is there already
+        plan_anew(tp)                        # the machine is there already
     while tp.improvement.phase != IDLE and visits > 0:
         visits -= _go_on(tp)
 
@@ -258,9 +258,8 @@ cdef void _finish(TpState* tp) noexcept nogil:
     cdef int64_t k
     s.phase = IDLE
     s.failed = 0
-    if s.first > s.origin and tp.active + 1 >= s.first:
-        return
-    if s.first == s.origin and (tp.w > 0.0 or tp.active != s.origin):
+    if tp.active + 1 >= s.first if s.first > s.origin else tp.w > 0.0 or tp.active != s.origin:
+        tp.replan = 1
         return
     tp.plan_from = s.origin
     for k in range(s.first, s.end):
