@@ -16,6 +16,7 @@ import select
 import signal
 import socket
 import sys
+import time
 import traceback
 from collections.abc import Callable
 from typing import Any
@@ -28,6 +29,7 @@ from nml.errors import PyemcError
 from nml.namespace import shm_name
 
 SWEEP_SECONDS = 0.5  # host time between looks for dead components and messages
+PATIENCE_SECONDS = 0.25  # host time; a machine that ends because of such a death says so itself
 
 
 class Server:
@@ -50,17 +52,21 @@ class Server:
             "quit": self.quit,
         }
         self._late: set[str] = set()  # threads whose first overrun has been told
+        self._died: dict[str, float] = {}  # components, and since when that is known
         self._overworked: set[str] = set()  # threads that were said to have too much to do
 
     def quit(self) -> None:
         """End: stop the threads, unload everything."""
         self.running = False
 
-    def look(self) -> None:
-        """Gather what is to be told."""
+    def look(self, patience: float = 0.0) -> None:
+        """Gather what is to be told; of components that died when they are dead for so many seconds."""
         for text in hear():
             self.host.note(text)
-        for name in self.host.hal.reap():
+        now = time.monotonic()
+        self._died.update(dict.fromkeys(self.host.hal.reap(), now))
+        for name in [name for name, since in self._died.items() if now - since >= patience]:
+            del self._died[name]
             self.host.note(f"HAL: component '{name}' died without leaving; removed")
         for name, complaint in self.host.overworked():
             if name not in self._overworked:
@@ -81,13 +87,14 @@ class Server:
         segment.skip_ids(1)
         try:
             while self.running and os.path.exists("/dev/shm" + shm_name("hal")):
-                ready, _, _ = select.select([self.listener, self.woken, *self._lines], [], [], SWEEP_SECONDS)
+                sweep = PATIENCE_SECONDS if self._died else SWEEP_SECONDS
+                ready, _, _ = select.select([self.listener, self.woken, *self._lines], [], [], sweep)
                 for source in ready:
                     if source is self.listener:
                         self._lines[source.accept()[0]] = b""
                     elif source in self._lines:
                         self._receive(source)
-                self.look()
+                self.look(PATIENCE_SECONDS)
         finally:
             self.host.hal.halt_threads()
             segment.host = (0, 0)
@@ -119,7 +126,7 @@ class Server:
             traceback.print_exception(error)
             place = traceback.extract_tb(error.__traceback__)[-1]
             answer = {"error": f"{place.filename}:{place.lineno}: {type(error).__name__}: {error}", "errno": -14}
-        self.look()
+        self.look(0.0 if self.running else PATIENCE_SECONDS)
         answer["notes"], self.host.notes = self.host.notes, []
         return answer
 
