@@ -10,7 +10,7 @@ segments in its middle: for lines by d |r t2 - t1| / 4.
 from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 
 from emcmot.tp.follow cimport follows_position
-from emcmot.tp.geometry cimport derivatives, position
+from emcmot.tp.geometry cimport derivatives, length, position
 from emcmot.tp.model cimport AXES, Segment, TpState
 from emcmot.tp.tp cimport TP_ARC, TP_TAP, TP_TERM_BLEND, TP_TERM_STOP
 
@@ -29,15 +29,6 @@ cdef double ARC_BLEND_ANGLE = 0.5    # rad of an arc that a blend may take
 cdef double SLIGHT = 0.1             # corners below this difference of tangents cost next to no deviation
 
 
-cdef double _length(const double* v) noexcept nogil:
-    """Length over all nine axes, a degree counting as one length unit."""
-    cdef double square = 0.0
-    cdef int i
-    for i in range(AXES):
-        square += v[i] * v[i]
-    return sqrt(square)
-
-
 cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b, double room) noexcept nogil:
     """Size of the blend between `a` and `b` that may take up to `room` from the end of `a`."""
     cdef Corner corner
@@ -53,7 +44,7 @@ cdef Corner decide_corner(const TpState* tp, const Segment* a, const Segment* b,
     corner.trim = 0.0
     for i in range(AXES):
         jump[i] = corner.ratio * t2[i] - t1[i]
-    sharpness = _length(jump)
+    sharpness = length(jump)
     corner.stop = must_stop(a, b) or sharpness > TANGENT
     if must_stop(a, b) or not corner.stop:
         return corner
@@ -149,7 +140,7 @@ cdef double _deviation(const Segment* a, const Segment* b, double ratio, double 
         position(b, ratio * (u - trim), p)
     for i in range(AXES):
         q[i] -= p[i]
-    return _length(q)
+    return length(q)
 
 
 cdef int blend_spans(const Segment* a, const Segment* b, const Corner* corner) noexcept nogil:

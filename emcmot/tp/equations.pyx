@@ -22,8 +22,8 @@ cdef enum:
 cdef double WITHIN = 0.985       # of limits a plan must be: overrides need the rest to begin
 cdef double TIGHTER = 0.998      # reserve of a span that is not, beyond what it misses,
 cdef double LEAST_RESERVE = 0.3  # and the least
-cdef double CAPPED = 0.2         # of the barrier: the feed is kept that much closer
-cdef double SHARED = 0.5         # of the barrier is by the time that a span takes, the rest the same for all
+cdef double CAPPED = 0.2         # of a span's own barrier: the feed is kept that much closer
+cdef double SHARED = 0.5         # of a barrier is the same for all spans, the rest by the time that they take
 cdef double SINGULAR = 1e-12     # of a diagonal: what is less is rounding
 
 ctypedef struct Local:       # one span of the plan that is being made
@@ -129,6 +129,11 @@ cdef inline void _slope(double value, double near, double* first, double* second
     first[0] = 1.0 / near + (near - left) * second[0]
 
 
+cdef inline double _shared(const Improvement* s, double weight) noexcept nogil:
+    """Weight of the barrier at one place of a span."""
+    return (1.0 - SHARED) * weight + SHARED * s.even / PLACES
+
+
 cdef double span_value(const TpState* tp, int64_t index, double share, double* worst) noexcept nogil:
     """What a span counts, with a share of the step; infinite where the speed would be none."""
     cdef const Improvement* s = &tp.improvement
@@ -168,7 +173,7 @@ cdef double span_value(const TpState* tp, int64_t index, double share, double* w
             worst[0] = fmax(worst[0], x)
             bars += _beyond(x, s.near, &product) + _beyond(-x, s.near, &product)
         bars -= log(product)
-    return value + s.barrier * (SHARED * weight + s.even) * (bars + CAPPED * capped)
+    return value + s.barrier * (_shared(s, weight) * bars + CAPPED * weight * capped)
 
 
 cdef inline void _bound(double value, double by_w, double by_a, double by_b, double weight, double near, double* g, double* h) noexcept nogil:
@@ -193,7 +198,7 @@ cdef void assemble_span(TpState* tp, int64_t index) noexcept nogil:
     """Add the derivatives of what a span counts to the equations."""
     cdef const Span* span = _span(tp, index)
     cdef Cell* here = _cell(tp, index)
-    cdef double cap = here.cap, near = tp.improvement.near, weight, barrier, v, w, a, most, bracket, first, second
+    cdef double cap = here.cap, near = tp.improvement.near, weight, barrier, capped, v, w, a, most, bracket, first, second
     cdef double g[3]
     cdef double h[6]
     cdef double by[3]
@@ -202,10 +207,11 @@ cdef void assemble_span(TpState* tp, int64_t index) noexcept nogil:
     cdef int place, j, k, l
     _look(tp, index, 0.0, &local)
     weight = here.weight / PLACES
-    barrier = tp.improvement.barrier * (SHARED * weight + tp.improvement.even)
+    barrier = tp.improvement.barrier * _shared(&tp.improvement, weight)
+    capped = tp.improvement.barrier * CAPPED * weight
     _slope(here.fresh / cap, CAPPED * near, &first, &second)
-    here.gradient += 2.0 * barrier * (CAPPED * first / cap - 1.0 / here.fresh)
-    here.diagonal += 2.0 * barrier * (CAPPED * second / (cap * cap) + 1.0 / (here.fresh * here.fresh))
+    here.gradient += 2.0 * (capped * first / cap - barrier / here.fresh)
+    here.diagonal += 2.0 * (capped * second / (cap * cap) + barrier / (here.fresh * here.fresh))
     if tp.improvement.steps == 0:            # with another barrier than the last trial's
         tp.improvement.merit += span_value(tp, index, 0.0, &tp.improvement.worst)
     for place in range(PLACES):
@@ -215,8 +221,8 @@ cdef void assemble_span(TpState* tp, int64_t index) noexcept nogil:
         _slope(w / cap, CAPPED * near, &first, &second)
         memset(g, 0, sizeof(g))
         memset(h, 0, sizeof(h))
-        g[0] = -(weight + barrier) / w + CAPPED * barrier * first / cap
-        h[0] = (weight + barrier) / (w * w) + CAPPED * barrier * second / (cap * cap)
+        g[0] = -(weight + barrier) / w + capped * first / cap
+        h[0] = (weight + barrier) / (w * w) + capped * second / (cap * cap)
         for j in range(span.n):
             at = _bends(span, j, place)
             if place < 2:

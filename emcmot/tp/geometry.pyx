@@ -1,7 +1,7 @@
 """Segments as curves: straight moves, and arcs that may be helices, spirals and carry any other axis along.
 
 Every curve is q(u) in nine axes, u in [0, length], with |dq/du| = 1 in the axes that the feed is measured along (exactly
-for lines and helices, on average for spirals).  Used by build (limits of the spans) and advance (positions).
+for lines and helices, on average for spirals).  Used by path and smooth (limits of the spans) and advance (positions).
 """
 
 from libc.math cimport M_PI, atan2, ceil, cos, hypot, isfinite, sin, sqrt
@@ -16,6 +16,15 @@ cdef double SHORTEST_RADIUS = 1e-9   # lu
 
 cdef inline double dot3(const double* a, const double* b) noexcept nogil:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+cdef double length(const double* v) noexcept nogil:
+    """Length over all nine axes, a degree counting as one length unit."""
+    cdef double square = 0.0
+    cdef int i
+    for i in range(AXES):
+        square += v[i] * v[i]
+    return sqrt(square)
 
 
 cdef double norm(const double* v, int unit) noexcept nogil:

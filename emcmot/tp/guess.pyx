@@ -14,8 +14,7 @@ from emcmot.tp.path cimport feed_cap, full_cap
 from emcmot.tp.profile cimport crawl, creeps, ends_at_rest, starts_at_rest
 
 cdef double SLOWEST = 0.01       # of the w that is programmed; slower overrides lower the rate only
-cdef double ROOM = 0.001         # over the feed, which plans keep a little below
-cdef double SHARED = 0.5         # of a barrier is the same for all spans
+cdef double ROOM = 0.0006        # over the w of the feed: plans keep below their caps by about that
 cdef double LEAD_ROOM = 1.05     # over the speed that a spindle asks for
 cdef double GUESS_PUSH = 0.5     # of acceleration and jerk
 cdef double GUESS_SHARE = 0.8    # of w
@@ -85,7 +84,7 @@ cdef void guess_plan(TpState* tp) noexcept nogil:
         w = _cell(tp, k).w if k < s.first else _cell(tp, k).change
         _cell(tp, k).weight = _span(tp, k).h / sqrt(w)
         s.weight += _cell(tp, k).weight
-    s.even = SHARED / 3.0 * s.weight / (s.end - s.first)
+    s.even = s.weight / (s.end - s.first)
     _mix(tp)
 
 

@@ -179,7 +179,7 @@ cdef int _go_on(TpState* tp) noexcept nogil:
             s.steps = 0
             _begin_step(tp)
         else:
-            s.phase = IDLE
+            _give_up(tp)
     elif s.trial <= s.merit:
         _take_step(tp)
     else:

@@ -1,8 +1,8 @@
 """Motion along the planned path with limited jerk, one servo period at a time.
 
 The machine follows the speed plan (see interior) in a time of its own: in a period dt the plan goes on by rate * dt. Overrides,
-holds, and the spindle that a move follows change the rate, between 0 and 1. With the plan's velocity, acceleration and jerk of an axis
-V, A, J, its own are
+holds, and the spindle that a move follows change the rate, between 0 and 1; a change that ends late may take it a little
+beyond, for which plans have room. With the plan's velocity, acceleration and jerk of an axis V, A, J, its own are
 
     rate V,   rate^2 A + rate' V,   rate^3 J + 3 rate rate' A + rate'' V
 
@@ -19,7 +19,7 @@ from emcmot.tp.guess cimport plan_cap
 from emcmot.tp.interior cimport plan_ahead, plan_anew
 from emcmot.tp.model cimport Cell, Segment, Span, TpState
 from emcmot.tp.path cimport feed_cap, feed_scale
-from emcmot.tp.profile cimport Pace, after, crawl, creeps, fastest, pace, pace_time, time_to
+from emcmot.tp.profile cimport Pace, after, crawl, creeps, fastest, most_rate, pace, pace_time, time_to
 from emcmot.tp.progress cimport current_segment, holding, next_span, run_tap, waiting
 from emcmot.tp.tp cimport TP_TAP
 
@@ -37,7 +37,6 @@ cdef double TURNING = 0.5        # of the jerk that the plan leaves, for the rat
 cdef double APPROACH = 0.5       # of that change of change, for closing in on the wanted rate: it may become less on the way
 cdef double MARGIN = 0.12        # s of the plan that are looked at beyond the change of the rate
 cdef double LEAST_RATE = 0.1     # that may become a plan
-cdef double MOST_RATE = 1.004     # what a change that ends late may come to; plans leave more than that
 cdef double FASTER = 1.02        # of a cap, at which a plan is made anew
 cdef double OVER = 0.002         # of the feed, at which the plan counts as too fast for it
 cdef double HUNGRY = 0.25        # s of the plan before its end, beyond what a stop takes: more path is wanted
@@ -177,8 +176,8 @@ cdef double _change_rate(TpState* tp) noexcept nogil:
     if fabs(goal - tp.rate) <= freedom.jerk * dt * dt * STANDING and fabs(change) <= 2.0 * STANDING * freedom.jerk * dt:
         tp.rate = goal
         tp.rate_change = 0.0
-    if tp.rate >= MOST_RATE:
-        tp.rate = MOST_RATE
+    if tp.rate >= most_rate():
+        tp.rate = most_rate()
         tp.rate_change = fmin(0.0, tp.rate_change)
     if tp.rate <= 0.0:
         tp.rate = tp.rate_change = 0.0

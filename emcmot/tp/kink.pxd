@@ -9,7 +9,6 @@ cdef enum Side:              # of a place: which limit of the second derivative 
 cdef void path_at(const TpState* tp, double way, Side side, double* q, double* dq, double* ddq) noexcept nogil
 cdef void forget_passed(TpState* tp) noexcept nogil
 cdef double next_node(const TpState* tp, double limit) noexcept nogil
-cdef double length(const double* v) noexcept nogil
 cdef double hat_off(double turn, double half, double away) noexcept nogil
 cdef void taken(const TpState* tp, double place, double* off) noexcept nogil
 cdef double corner_back(const TpState* tp, int count) noexcept nogil

@@ -10,9 +10,10 @@ An arc is a polyline as well, whose kinks and hats are those of a cubic spline t
 from one stop to the next has one parameter, the *way*. Called by smooth.
 """
 
-from libc.math cimport INFINITY, fabs, sqrt
+from libc.math cimport INFINITY, fabs
 from libc.stdint cimport int64_t
 
+from emcmot.tp.geometry cimport length
 from emcmot.tp.model cimport AXES, KINKS, Kink, TpState
 
 cdef enum:
@@ -101,15 +102,6 @@ cdef double next_node(const TpState* tp, double limit) noexcept nogil:
 
 
 # --- the size of corners ----------------------------------------------------------------------------------------------
-
-cdef double length(const double* v) noexcept nogil:
-    """Length over all nine axes, a degree counting as one length unit."""
-    cdef double square = 0.0
-    cdef int i
-    for i in range(AXES):
-        square += v[i] * v[i]
-    return sqrt(square)
-
 
 cdef double hat_off(double turn, double half, double away) noexcept nogil:
     """How far a hat of this half-width takes the path from the polyline, `away` from its corner."""

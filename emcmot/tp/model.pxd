@@ -100,7 +100,7 @@ ctypedef struct Span:
     double h                 # length in u
     double trim              # blends: u of the earlier segment that the blend takes; the blend's u runs to 2 trim
     double ratio             # du of the next span per du of this one, where they join
-    double cap               # hard limit of w here: velocities of axes and joints, vel_max
+    double cap               # hard limit of w here: velocities of axes and joints; without a jerk limit vel_max too
     double speed             # largest |dq/du| in feed units: the feed cap is w <= (feed / speed)^2
     double speed_before      # blends: the same for the feed of the earlier segment
     double acc               # lines: limit of |d2u/dt2|; else the limit that the segment asks for, or infinity
@@ -152,7 +152,7 @@ ctypedef struct Improvement: # of the plan: where its computation is
     int failed               # the last one led to nothing
     double barrier           # weight of what keeps away from limits
     double weight            # of all spans
-    double even              # of half a span, the same for all
+    double even              # of a span, on average
     double near              # what is left of a limit from where on its barrier is a parabola
     int within               # no limit is broken so far
     double worst             # largest share of a limit in the plan

@@ -10,6 +10,11 @@ ctypedef struct Pace:        # speed along one span: w(x) = w + x (slope + x ben
     double bend
 
 
+cdef inline double most_rate() noexcept nogil:
+    """Largest rate of the plan's time to real time; velocities have room for it."""
+    return 1.004
+
+
 cdef double crawl(const TpState* tp, int64_t index) noexcept nogil
 cdef int creeps(const TpState* tp, int64_t index) noexcept nogil
 cdef int starts_at_rest(const TpState* tp, int64_t index) noexcept nogil

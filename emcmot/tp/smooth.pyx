@@ -14,10 +14,10 @@ from libc.string cimport memcpy, memset
 
 from emcmot.tp.corner cimport TANGENT, corner_ratio, corner_tolerance, must_stop
 from emcmot.tp.cubic cimport corner_speed, first_speed, half_for_speed, limit_cubic
-from emcmot.tp.geometry cimport derivatives, position
+from emcmot.tp.geometry cimport derivatives, length, position
 from emcmot.tp.interior cimport forget_plan
 from emcmot.tp.joints cimport Curve, add_joints
-from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, corner_back, forget_passed, hat_off, length, next_node, path_at
+from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, corner_back, forget_passed, hat_off, next_node, path_at
 from emcmot.tp.kink cimport reach_back, size_corner, taken
 from emcmot.tp.merge cimport take_segment
 from emcmot.tp.model cimport AXES, END_CORNER, END_OPEN, END_STOP, KINKS, KNOTS, SPAN_CUBIC, SPAN_LINE
@@ -521,7 +521,7 @@ cdef void _add_span(TpState* tp, const Segment* seg, double begin, double end) n
         memcpy(span.q0, tp.node[0], sizeof(span.q0))
         memcpy(span.q1, q[0], sizeof(span.q1))
         span.tight = 1.0
-        limit_speed(tp, span, tp.node[1], q[1], seg.vel_max, seg.unit)
+        limit_speed(tp, span, tp.node[1], q[1], INFINITY, seg.unit)
         keep_derivatives(span, tp.node[1], q[1], tp.node[2], q[2])
         curve.length = span.h
         if tp.inverse != NULL:

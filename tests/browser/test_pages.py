@@ -28,6 +28,14 @@ SMALL_TARGETS = """
   .map(([name, box]) => `${name}: ${box.width} x ${box.height}`)
 """.replace("SIZE", str(SMALLEST_TARGET - 0.5))
 
+# The store tells its watchers in one frame, and the text draws its choice in the next.
+CHOSEN_LINE = """
+async () => {
+  for (let frame = 0; frame < 3; frame += 1) await new Promise(requestAnimationFrame);
+  return document.querySelector(".program-text .line[aria-selected=true]")?.dataset.line;
+}
+"""
+
 
 @pytest.fixture
 def mill(tmp_path: Path) -> Iterator[int]:
@@ -158,9 +166,9 @@ def test_the_tool_path_shows_the_program_and_finds_a_line(mill: int, open_screen
         assert box is not None
         for x in range(int(box["x"]) + 4, int(box["x"] + box["width"]) - 4, 6):
             screen.page.mouse.click(x, box["y"] + box["height"] / 2)
-            line = screen.page.locator(".program-text .line[aria-selected=true]")
-            if line.count():
-                return line.get_attribute("data-line")
+            line: str | None = screen.page.evaluate(CHOSEN_LINE)
+            if line:
+                return line
         return None
 
     wait_until(lambda: chosen() in ("3", "5"), "one of the sides that cross the middle, once the view is drawn")

@@ -17,7 +17,7 @@ DT = 0.001
 ROUNDING = 1 + 2e-6
 COMPARED = 300  # positions of a run that are compared with its path
 AXES_USED = 5
-STANDING = 70  # periods without motion that are rest: more than smoothing averages over
+STANDING = 70  # periods without motion that are rest
 STANDING_PERIODS = 70_000  # in which whatever was asked for must have come to rest
 COMMANDS_AT_LAST = (
     ("feed_scale", 1.0),

@@ -52,7 +52,7 @@ def test_short_moves_along_a_curve_are_hardly_slower_than_one_straight_move():
     assert report.seconds < 1.06 * (60 / 60 + 60 / 500 + 500 / JERK)
 
 
-def test_a_corner_that_smoothing_would_crawl_round_is_a_stop():
+def test_a_corner_that_a_blend_would_crawl_round_is_a_stop():
     program = jerk_limited(tolerance=0.002).line(0, -5, 0).line(0, -5.002, -0.001, -20, 20).line(0, -5.002, 5)
     report = checked(program, program.run(), 0.002)
     assert report.end <= 1e-9
@@ -124,7 +124,7 @@ def test_a_feed_override_changes_the_speed_within_the_jerk_limit():
         program.planner.feed_scale(scale)
         parts.append(program.planner.step(600))
         speed = (parts[-1][-1, 0] - parts[-1][-2, 0]) / DT
-        assert speed == pytest.approx(60.0 * scale, rel=2e-3, abs=1e-9)
+        assert 0.999 * scale <= speed / 60.0 <= 1.0001 * scale
     parts.append(program.run())
     assert checked(program, np.concatenate(parts), 0.0).end == 0.0
 
