@@ -220,7 +220,7 @@ def lead_in(to: Array) -> float:
 
 def run(job: Job, jerk: float = 0.0) -> tuple[Array, float, float]:
     """Positions, and seconds of processor time for adding and for the periods; `jerk` in mm/s^3, 0: no limit."""
-    planner = Planner(DT, 2000)
+    planner = Planner(DT)
     planner.limit_jerk(jerk > 0.0)
     for axis in range(9):
         planner.set_limits(axis, VMAX[axis], AMAX[axis], jerk)

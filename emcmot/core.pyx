@@ -23,7 +23,7 @@ from nml.errors import HalError
 
 same_size(__name__, "Motion", sizeof(Motion))
 
-QUEUE_SIZE = 2000
+QUEUE_SIZE = 4000          # moves; short ones, under a low limit of jerk, need as much path as planning and braking take
 NO_LIMIT = 1e99
 UNLIMITED_SPINDLE = 1e99   # rpm
 NO_SEQUENCE = 999          # HOME_SEQUENCE of a joint that "home all" leaves alone

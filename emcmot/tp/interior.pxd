@@ -4,5 +4,6 @@ from emcmot.tp.model cimport TpState
 
 
 cdef void forget_plan(TpState* tp) noexcept nogil
+cdef int planning(const TpState* tp) noexcept nogil
 cdef void plan_anew(TpState* tp) noexcept nogil
 cdef void plan_ahead(TpState* tp) noexcept nogil

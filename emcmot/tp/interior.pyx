@@ -66,6 +66,11 @@ cdef void forget_plan(TpState* tp) noexcept nogil:
     tp.rate_limit = 1.0
 
 
+cdef int planning(const TpState* tp) noexcept nogil:
+    """Whether a plan is being made."""
+    return tp.improvement.phase != IDLE
+
+
 cdef void plan_anew(TpState* tp) noexcept nogil:
     """The plan in force was changed: what is being made no longer fits it."""
     tp.improvement.phase = IDLE

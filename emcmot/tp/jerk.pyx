@@ -16,7 +16,7 @@ from libc.stdint cimport int64_t
 
 from emcmot.tp.follow cimport count_way, follows_position, follows_velocity, spindle_speed
 from emcmot.tp.guess cimport plan_cap
-from emcmot.tp.interior cimport plan_ahead, plan_anew
+from emcmot.tp.interior cimport plan_ahead, plan_anew, planning
 from emcmot.tp.model cimport Cell, Segment, Span, TpState
 from emcmot.tp.path cimport feed_cap, feed_scale
 from emcmot.tp.profile cimport Pace, after, crawl, creeps, fastest, most_rate, pace, pace_time, time_to
@@ -36,10 +36,11 @@ cdef double LEFT = 0.995         # of accelerations and jerks, may be used
 cdef double TURNING = 0.5        # of the jerk that the plan leaves, for the rate's change; the rest changes that change
 cdef double APPROACH = 0.5       # of that change of change, for closing in on the wanted rate: it may become less on the way
 cdef double MARGIN = 0.12        # s of the plan that are looked at beyond the change of the rate
-cdef double LEAST_RATE = 0.1     # that may become a plan
+cdef double LEAST_RATE = 0.1     # that may become a plan,
+cdef double LONG = 0.05          # s on one span, with which it may not
 cdef double FASTER = 1.02        # of a cap, at which a plan is made anew
 cdef double OVER = 0.002         # of the feed, at which the plan counts as too fast for it
-cdef double HUNGRY = 0.25        # s of the plan before its end, beyond what a stop takes: more path is wanted
+cdef double HUNGRY = 0.2        # s of the plan before its end, beyond what a stop takes: more path is wanted
 
 ctypedef struct Freedom:
     double change                # largest |rate'|
@@ -187,12 +188,13 @@ cdef double _change_rate(TpState* tp) noexcept nogil:
 cdef int _take_over_rate(TpState* tp) noexcept nogil:
     """The rate is steady: let it be that of a slower plan, which can be improved where overrides do not matter.
 
-    0 where that must wait: close to a standstill.
+    0 where that must wait: close to a standstill, or where the next spans, which no new plan makes faster, would take long.
     """
     cdef int64_t k
-    cdef double share = tp.rate * tp.rate
-    for k in range(tp.active - 1, tp.active + 2):
-        if k >= tp.plan_from and k < tp.planned and _cell(tp, k).w * share <= crawl(tp, k):
+    cdef double share = tp.rate * tp.rate, w
+    for k in range(max(tp.plan_from, tp.active - 1), min(tp.planned, tp.active + 3)):
+        w = _cell(tp, k).w * share
+        if w <= crawl(tp, k) or _span(tp, k).h > LONG * sqrt(w):
             return 0
     for k in range(max(tp.plan_from, tp.active - 1), tp.planned):
         _cell(tp, k).w = fmax(share * _cell(tp, k).w, fmin(_cell(tp, k).w, crawl(tp, k)))
@@ -235,7 +237,7 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
         return
     plan_ahead(tp)
     if tp.active >= tp.planned:
-        tp.hungry = 1
+        tp.hungry = not planning(tp)
         return
     if tp.caps_changed:
         tp.caps_changed = 0
@@ -249,7 +251,7 @@ cdef void move_smoothly(TpState* tp) noexcept nogil:
     tp.plan_time -= time
     p = pace(tp, tp.active)
     v = sqrt(fmax(0.0, p.w + tp.u * (p.slope + tp.u * p.bend)))
-    tp.hungry = tp.span_tail - tp.planned < LITTLE and tp.plan_time < HUNGRY + v / span.push + span.push / span.jerk
+    tp.hungry = tp.span_tail <= tp.planned and tp.plan_time < HUNGRY + v / span.push + span.push / span.jerk
     _go(tp, time)
 
 

@@ -20,7 +20,7 @@ cdef double SHARE = 0.5          # of the tolerance that chords may use,
 cdef double SMOOTH_SHARE = 0.3  # and where jerk is limited: there corners are as wide as several chords
 cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
 cdef double ALIKE = 0.75         # ratio of the tolerances of neighbours below which a run ends
-cdef double GROWTH = 1.3         # of one chord over the one before
+cdef double GROWTH = 1.3         # of one chord over the one before, or else by one raw
 
 
 cdef inline Segment* _raw(const TpState* tp, int64_t index) noexcept nogil:
@@ -83,9 +83,11 @@ cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
 cdef double _longest_chord(const TpState* tp, int64_t first) noexcept nogil:
     """Length that keeps the next chord similar to the one before, where they are parts of one run."""
     cdef const Segment* raw = _raw(tp, first)
+    cdef double before
     if tp.seg_tail <= tp.seg_head or not raw.joins:
         return INFINITY
-    return fmax(GROWTH * _seg(tp, tp.seg_tail - 1).length, 1.5 * raw.length)
+    before = _seg(tp, tp.seg_tail - 1).length
+    return fmax(GROWTH * before, before + 1.5 * raw.length)
 
 
 cdef int _run_beyond(const TpState* tp, int64_t index, int count) noexcept nogil:

@@ -31,7 +31,7 @@ cdef class Planner:
     cdef Tp* tp
     cdef readonly double period
 
-    def __cinit__(self, double period=0.001, int queue=2000):
+    def __cinit__(self, double period=0.001, int queue=4000):
         self.tp = tp_create(queue)
         if self.tp == NULL:
             raise MemoryError

@@ -25,7 +25,7 @@ class Program:
     """Moves as given to a planner and as ideal curves."""
 
     def __init__(self, start=(0, 0, 0), dt=DT, **defaults):
-        self.planner = Planner(dt, 2000)
+        self.planner = Planner(dt)
         self.dt = dt
         for axis in range(9):
             self.planner.set_limits(axis, VMAX[axis], AMAX[axis])

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from emcmot.tp.planner import TERM_STOP, TERM_TANGENT
+from emcmot.tp.planner import TERM_STOP, TERM_TANGENT, Planner
 from emcmot.tp.verifier import verify
 from tests.support.planned import AMAX, DT, ROUNDING, VMAX, Program, come_to_rest
 
@@ -129,9 +129,39 @@ def test_a_feed_override_changes_the_speed_within_the_jerk_limit():
     assert checked(program, np.concatenate(parts), 0.0).end == 0.0
 
 
+def test_lower_and_lower_overrides_are_kept_and_left_again():
+    program = jerk_limited().line(300, vel=60.0)
+    parts = [program.planner.step(800)]
+    for scale in (0.2, 0.04, 0.008, 0.0016, 0.0003):
+        program.planner.feed_scale(scale)
+        parts.append(program.planner.step(1500))
+        assert parts[-1][-1, 0] - parts[-1][-2, 0] == pytest.approx(60.0 * scale * DT, rel=2e-3)
+    program.planner.feed_scale(1.0)
+    parts.append(program.planner.step(600))
+    assert parts[-1][-1, 0] - parts[-1][-2, 0] == pytest.approx(60.0 * DT, rel=2e-3)
+    parts.append(program.run())
+    assert checked(program, np.concatenate(parts), 0.0).end == 0.0
+
+
 def test_without_jerk_of_an_axis_only_the_others_are_limited():
     program = jerk_limited()
     program.planner.set_limits(0, VMAX[0], AMAX[0], 0.0)
     program.line(30, 0, 0).line(30, 30, 0)
     report = verify(program.run(), program.path, VMAX, AMAX, DT, 0.0, 1, JMAX)
     assert report.jerk[1] <= ROUNDING
+
+
+@pytest.mark.parametrize(("jerk", "seconds"), [(50_000.0, 2.15), (5_000.0, 2.3)])
+def test_short_moves_never_wait_for_the_queue_that_they_arrive_in(jerk, seconds):
+    planner = Planner(DT)
+    planner.limit_jerk(True)
+    for axis in range(9):
+        planner.set_limits(axis, VMAX[axis], AMAX[axis], jerk)
+    angles = np.arange(1, 8001) * 2e-4
+    points = np.column_stack([100 * np.cos(angles) - 100, 100 * np.sin(angles), *[0 * angles] * 7])
+    parts, given = [], 0
+    while given < len(points) or not planner.status()["done"]:
+        while given < len(points) and planner.add_line(points[given], 85.0, tolerance=0.005, id=given + 1):
+            given += 1
+        parts.append(planner.step_until_done(20))
+    assert len(np.concatenate(parts)) * DT < seconds, "160 mm and one ramp each at both ends"
