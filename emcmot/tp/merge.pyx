@@ -20,7 +20,7 @@ cdef double SHARE = 0.5          # of the tolerance that chords may use,
 cdef double SMOOTH_SHARE = 0.3  # and where jerk is limited: there corners are as wide as several chords
 cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
 cdef double ALIKE = 0.75         # ratio of the tolerances of neighbours below which a run ends
-cdef double GROWTH = 1.3         # of one chord over the one before, or else by one raw
+cdef double GROWTH = 1.3         # of one chord over the one before
 
 
 cdef inline Segment* _raw(const TpState* tp, int64_t index) noexcept nogil:
@@ -54,7 +54,7 @@ cdef int can_join(const Segment* before, const Segment* raw) noexcept nogil:
 cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
     """Make the next segment, of how many raws; 0 when there is none, or it is not urgent and the run may still go on."""
     cdef int64_t first = tp.raw_next
-    cdef int available = <int>min(tp.raw_tail - first, LONGEST_RUN), count = 1, run
+    cdef int available = <int>min(tp.raw_tail - first, LONGEST_RUN), count = 1, run, cut
     cdef double longest
     cdef Segment* seg = _seg(tp, tp.seg_tail)
     if available <= 0:
@@ -62,7 +62,8 @@ cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
     longest = _longest_chord(tp, first)
     while count < available and _raw(tp, first + count).joins and _deviation(tp, first, count + 1, longest) >= 0.0:
         count += 1
-    if count == available and count < LONGEST_RUN and not urgent:
+    cut = count == available and count < LONGEST_RUN
+    if cut and not urgent:
         return 0
     if count > 1:
         run = _run_beyond(tp, first + count, count)
@@ -71,6 +72,7 @@ cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
     seg[0] = _raw(tp, first)[0]
     seg.raw_first = first
     seg.raw_count = count
+    seg.cut = cut
     seg.deviation = 0.0
     if count > 1:
         seg.deviation = _deviation(tp, first, count, INFINITY)
@@ -83,11 +85,9 @@ cdef int take_segment(TpState* tp, int urgent) noexcept nogil:
 cdef double _longest_chord(const TpState* tp, int64_t first) noexcept nogil:
     """Length that keeps the next chord similar to the one before, where they are parts of one run."""
     cdef const Segment* raw = _raw(tp, first)
-    cdef double before
-    if tp.seg_tail <= tp.seg_head or not raw.joins:
+    if tp.seg_tail <= tp.seg_head or not raw.joins or _seg(tp, tp.seg_tail - 1).cut:
         return INFINITY
-    before = _seg(tp, tp.seg_tail - 1).length
-    return fmax(GROWTH * before, before + 1.5 * raw.length)
+    return fmax(GROWTH * _seg(tp, tp.seg_tail - 1).length, 1.5 * raw.length)
 
 
 cdef int _run_beyond(const TpState* tp, int64_t index, int count) noexcept nogil:

@@ -76,6 +76,7 @@ ctypedef struct Segment:
     int joins                # raws: may share a chord with the raw before
     int64_t raw_first        # raws that it stands for
     int raw_count
+    int cut                  # it ends because no more raws were known, and could not wait
     double deviation         # how far the raws may be from it; their tolerance less this is left for blends
     double begin             # jerk-limited motion: way along the chain at its start,
     double pace              # and du per unit of that way
