@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,13 +22,22 @@ from tests.support.machine import PATIENCE, wait_until
 
 pytestmark = pytest.mark.process
 
+LONGER_THAN_A_LOOK = 0.3  # s; the publisher looks at its pins every 0.1 s
+
+
+class Messages(list[dict[str, object]]):
+    """Those of the process ``pid``."""
+
+    pid = 0
+
 
 @contextlib.contextmanager
-def publisher(*options: str) -> Iterator[list[dict[str, object]]]:
+def publisher(*options: str) -> Iterator[Messages]:
     """Run it; the messages that it has printed so far."""
-    messages: list[dict[str, object]] = []
+    messages = Messages()
     command = [sys.executable, "-m", "gui.shop.pins", *options]
     with subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, text=True) as process:
+        messages.pid = process.pid
         assert process.stdout is not None
         lines = process.stdout
 
@@ -64,6 +76,16 @@ def test_messages_come_as_often_as_the_pin_says() -> None:
         hal.set_p("mqtt-publisher.period", "1")
         wait_until(lambda: len(messages) >= 3, "three messages")
         assert messages[-1] == {"mqtt-publisher.period": 1}
+
+
+def test_a_publisher_that_was_stopped_and_continued_goes_on() -> None:
+    with publisher("--dryrun", "keys=mqtt-publisher.period") as messages:
+        hal.set_p("mqtt-publisher.period", "1")
+        for number in range(1, 4):
+            wait_until(lambda number=number: len(messages) >= number, "a message")
+            os.kill(messages.pid, signal.SIGSTOP)
+            time.sleep(LONGER_THAN_A_LOOK)
+            os.kill(messages.pid, signal.SIGCONT)
 
 
 @needs_broker
