@@ -85,10 +85,9 @@ def device(tmp_path: Path) -> Iterator[Device]:
 
 
 def test_inputs_and_registers_show_in_pins(device: Device) -> None:
-    until(lambda: hal.get_value("plc.in.door.bit") and not hal.get_value("plc.in.door.bit-inv"))
-    assert (hal.get_value("plc.in.light.bit"), hal.get_value("plc.in.light.bit-inv")) == (False, True)
-    until(lambda: hal.get_value("plc.analog.01.int") == 3000)
-    assert hal.get_value("plc.analog.00.float") == 2000.0
+    bits = [f"plc.in.{name}" for name in ("door.bit", "door.bit-inv", "light.bit", "light.bit-inv")]
+    until(lambda: [hal.get_value(name) for name in bits] == [True, False, False, True])
+    until(lambda: hal.get_value("plc.analog.01.int") == 3000 and hal.get_value("plc.analog.00.float") == 2000.0)
     device.inputs[1] = 1
     until(lambda: hal.get_value("plc.in.light.bit") and not hal.get_value("plc.in.light.bit-inv"))
 
