@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
+import hal
 import linuxcnc
 from linuxcnc.aio import Machine, Outcome, Result
 from tests.support.desk import switched_on_and_homed
@@ -131,7 +132,7 @@ def test_a_joint_is_homed_when_the_order_is_done(mill):
 
 def test_a_setting_is_done_while_a_program_runs_and_the_program_when_it_has_ended(mill, tmp_path):
     part = tmp_path / "part.ngc"
-    part.write_text("G21 G90 G94 F3000\nG4 P20\nG1 X1\nM2\n")
+    part.write_text("G21 G90 G94 F3000\nM66 P0 L3 Q100000\nG1 X1\nM2\n")  # goes on when the test has looked
     operator, pendant = linuxcnc.command(), linuxcnc.command()
     operator.mode(linuxcnc.MODE_AUTO)
     assert operator.result()
@@ -143,6 +144,7 @@ def test_a_setting_is_done_while_a_program_runs_and_the_program_when_it_has_ende
     mill.poll()
     assert mill.feedrate == 0.7
     assert operator.result(0.0) is None
+    hal.set_p("motion.digital-in-00", "1")
     assert operator.result(60.0)
     mill.poll()
     assert mill.position[0] == pytest.approx(1.0)
