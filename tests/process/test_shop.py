@@ -133,6 +133,7 @@ def test_the_last_will_tells_of_a_publisher_that_was_killed(tmp_path: Path, brok
     reader = Reader(broker.port)
     with running(ini, speed=10.0) as run:
         reader.wait("shop/mill/online", 1)
+        wait_until(lambda: "mqtt" in run.pids(), "noted by the launcher")
         subprocess.run(["kill", "-9", str(run.pids()["mqtt"])], check=True)
         reader.wait("shop/mill/online", 0)
         switch_on(run)  # the machine goes on without it
@@ -171,11 +172,10 @@ async def _read_as_a_client(endpoint: str, run: Run) -> None:
         def node(name: str) -> asyncua.Node:
             return client.get_node(f"ns={index};s=sim-mill-mm/{name}")
 
-        async with asyncio.timeout(PATIENCE):
-            while await node("state").read_value() != "estop":
-                await asyncio.sleep(0.05)
-        assert await node("axes").read_value() == "XYZ"
-        assert await node("position/actual").read_value() == [0.0, 0.0, 0.0]
+        for name, value in (("state", "estop"), ("axes", "XYZ"), ("position/actual", [0.0, 0.0, 0.0])):
+            async with asyncio.timeout(PATIENCE):
+                while await node(name).read_value() != value:
+                    await asyncio.sleep(0.05)
         assert (await node("velocity").read_description()).Text == "along the path, units/s"
         with pytest.raises(asyncua.ua.UaStatusCodeError):
             await node("override/feed").write_value(200.0)
@@ -206,10 +206,10 @@ class Changes:
 async def _connected(endpoint: str) -> asyncua.Client:
     async with asyncio.timeout(PATIENCE):
         while True:
-            client = asyncua.Client(endpoint)
+            client = asyncua.Client(endpoint, timeout=PATIENCE)
             try:
                 async with client:
-                    return asyncua.Client(endpoint)
+                    return asyncua.Client(endpoint, timeout=PATIENCE)
             except OSError:
                 await asyncio.sleep(0.1)
 
