@@ -21,7 +21,10 @@ CARRIED = frozenset(
     )
 )  # fmt: skip
 """Modal codes that the next line finds in force."""
-MOTION = frozenset(("G0", "G1", "G80"))
+FEED_MOTION = "G1"
+MOTION = frozenset(("G0", FEED_MOTION, "G80"))
+BEFORE_ANY_FEED = (f"{FEED_MOTION} F1", "F0")
+"""How the feed motion comes into force where there is no feed: the code alone would be an error."""
 
 
 def modes(values: dict[str, Any]) -> list[str]:
@@ -31,11 +34,15 @@ def modes(values: dict[str, Any]) -> list[str]:
     words = list(codes)
     if CONTINUOUS in codes and path > 0.0:
         words += [f"P{path:.9g}", f"Q{naive:.9g}"]
-    if feed > 0.0 and INVERSE_TIME not in codes:
+    fed = feed > 0.0 and INVERSE_TIME not in codes
+    if fed:
         words.append(f"F{feed:.9g}")
     if speed > 0.0:
         words.append(f"S{speed:.9g}")
-    return [" ".join(words), *(code for code in values["gcode_text"] if code in MOTION)]
+    blocks = [" ".join(words), *(code for code in values["gcode_text"] if code in MOTION)]
+    if not fed and FEED_MOTION in blocks:  # as a program's end leaves it
+        blocks[blocks.index(FEED_MOTION) :] = BEFORE_ANY_FEED
+    return blocks
 
 
 def tool_offset(values: dict[str, Any], mm_per_unit: float) -> str:

@@ -28,7 +28,7 @@ def test_a_page_switches_on_homes_and_shows_where_the_machine_is(client):
     client.call("mdi.run", text="G0 X12.5 Y-3")
     client.wait(lambda state: abs(state["work_position"][0] - 12.5) < 1e-9, "there")
     assert client.hello["config"]["axes"][0]["letter"] == "X"
-    assert "G0" in client.state["gcode_text"]
+    client.wait(lambda state: "G0" in state["gcode_text"], "the code of the line")
 
 
 def test_touching_off_an_axis_moves_the_coordinate_system(client):
@@ -210,6 +210,20 @@ def test_mdi_is_checked_from_where_the_machine_stands(client):
         client.call("mdi.check", text="G1 X")
     assert refused.value.code == "gcode"
     client.wait(lambda state: state["position"][0] == 290.0 and state["inpos"], "still there")
+
+
+def test_lines_are_checked_and_pictures_made_after_a_program_that_left_no_feed(client):
+    client.ready()
+    client.upload("short.ngc", "G21 G90 G0 X5\nM2\n")
+    client.call("program.open", path="short.ngc")
+    client.wait(lambda state: state["program"], "loaded")
+    client.call("program.run")
+    ended = {"interp_state": linuxcnc.INTERP_IDLE, "inpos": True, "position": [5.0] + [0.0] * 8}
+    client.wait(lambda state: {key: state[key] for key in ended} == ended and "G1" in state["gcode_text"], "the end")
+    assert client.call("mdi.check", text="G0 X7")["end"][0] == 7.0
+    client.call("program.open", path="square.ngc")
+    client.wait(lambda state: state["program"]["name"] == "square.ngc", "loaded")
+    client.wait(lambda state: state["preview"]["state"] == "whole" and "square" in state["preview"]["file"], "picture")
 
 
 def test_run_from_a_line_shows_the_difference_first(client):

@@ -26,6 +26,11 @@ def test_a_feed_per_line_is_not_carried_and_a_speed_is():
     assert present.modes(STANDING | codes) == ["G93 S500", "G80"]
 
 
+def test_the_feed_motion_that_a_program_leaves_is_carried_without_a_feed():
+    values = STANDING | {"settings": [0.0, 0.0, 0.0, 0.0, 0.0]}
+    assert present.modes(values) == ["G17 G21 G64 G90 G94 G54", "G1 F1", "F0"]
+
+
 def test_a_tool_offset_is_brought_about_in_program_units():
     offset = [0.0, 0.0, 25.4] + [0.0] * 6
     assert present.tool_offset(STANDING | {"tool_offset": offset, "program_units": 1}, 1.0) == "G20 G43.1 Z1.000000"
