@@ -60,8 +60,10 @@ class WebClient:
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
 
     def __enter__(self) -> WebClient:
+        """Connect; the machine's first status may still be on its way to the server."""
         self._thread.start()
         self.run(self._connect())
+        self.wait(lambda state: self.hello["config"]["wizard"] or "task_state" in state, "first status")
         return self
 
     def __exit__(self, *exc_info: object) -> None:
