@@ -97,7 +97,7 @@ def main(arguments: list[str] | None = None) -> int:
         period.set(PERIOD_S)
         component.ready()
         sent = -math.inf
-        while not ENDS & signal.sigpending():  # sigtimedwait() would take a stop and continuation of the process for them
+        while not ENDS & signal.sigpending():  # sigtimedwait() would take a continued process for an ended one
             if enable.get() and clock.host_now() - sent >= period.get():
                 sent = clock.host_now()
                 send(json.dumps(values(options.keys)))
