@@ -224,7 +224,11 @@ start
 setp oil.trigger 1
 setp air.edge 0
 """
-    said = script(tmp_path, text + "loadusr -w sleep 0.2\nstop\n").stderr.splitlines()
+    (tmp_path / "periods.py").write_text(
+        "import time\nfrom hal.core import Hal\n[thread] = Hal().segment.threads()\nfirst = thread.cycles\n"
+        "while thread.cycles < first + 5: time.sleep(0.01)\n"
+    )
+    said = script(tmp_path, text + f"loadusr -w {sys.executable} periods.py\nstop\n").stderr.splitlines()
     assert said.count("Oil is low") == 1
     assert said.count("No air") == 1
 
