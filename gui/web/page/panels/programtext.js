@@ -3,7 +3,7 @@
  * million lines cost no more than a hundred.
  */
 
-import { fill, h, setFlag } from "../core/dom.js";
+import { fill, h, setAttribute, setFlag } from "../core/dom.js";
 import { highlight } from "../core/gcode.js";
 import { _ } from "../core/i18n.js";
 
@@ -12,6 +12,8 @@ const PAGE = 400; // lines of one request
 const PAGES_KEPT = 40;
 const TALLEST = 6_000_000; // px; browsers clip taller elements, so beyond it scrolling is scaled
 const HANDS_OFF_MS = 4000; // after the operator scrolled, the text does not follow the machine
+
+/** @typedef {{element: HTMLElement, text: string | null | undefined, error: string | undefined}} Row `text` null: not written yet */
 
 export class ProgramText {
   #total = 0;
@@ -26,6 +28,9 @@ export class ProgramText {
   #selected = 0;
   #touched = 0;
   #drawn = false;
+  /** @type {Row[]} the elements of the lines in sight; they stay, so that a press that a redraw falls into still counts */
+  #rows = [];
+  #firstRow = 0;
 
   /**
    * @param {import("../core/app.js").App} app
@@ -131,30 +136,40 @@ export class ProgramText {
 
   #drawNow() {
     const first = Math.max(Math.floor(this.#firstLine()), 0);
-    const count = Math.min(Math.ceil(this.element.clientHeight / ROW) + 2, this.#total - first);
-    const rows = [];
-    for (let line = first + 1; line <= first + count; line += 1) rows.push(this.#row(line));
+    const count = Math.max(Math.min(Math.ceil(this.element.clientHeight / ROW) + 2, this.#total - first), 0);
+    if (first !== this.#firstRow || count !== this.#rows.length) {
+      this.#firstRow = first;
+      this.#rows = Array.from({ length: count }, (_none, n) => this.#row(first + n + 1));
+      fill(this.rows, this.#rows.map(({ element }) => element));
+    }
     this.rows.style.transform = `translateY(${this.#squeeze === 1 ? first * ROW : this.element.scrollTop}px)`;
-    fill(this.rows, rows);
+    this.#rows.forEach((row, n) => this.#write(row, first + n + 1));
   }
 
-  /** @param {number} line */
+  /** @param {number} line @returns {Row} */
   #row(line) {
+    const element = h("div", { class: "line", role: "option", data: { line }, onclick: () => this.choose(line) });
+    return { element, text: null, error: undefined };
+  }
+
+  /** Bring one line up to date. @param {Row} row @param {number} line */
+  #write(row, line) {
+    const { element } = row;
     const text = this.#line(line);
     const error = this.errors.get(line);
-    const row = h(
-      "div",
-      {
-        class: "line", role: "option", "aria-selected": String(line === this.#selected), data: { line }, title: error,
-        onclick: () => this.choose(line),
-      },
-      h("span", { class: "number" }, String(line)),
-      h("span", { class: "text" }, text === undefined ? "…" : highlight(text)),
-      error && h("span", { class: "error" }, error),
-    );
-    setFlag(row, "data-active", line === this.#active);
-    setFlag(row, "data-error", error !== undefined);
-    return row;
+    if (text !== row.text || error !== row.error) {
+      Object.assign(row, { text, error });
+      fill(
+        element,
+        h("span", { class: "number" }, String(line)),
+        h("span", { class: "text" }, text === undefined ? "…" : highlight(text)),
+        error && h("span", { class: "error" }, error),
+      );
+      element.title = error ?? "";
+    }
+    setAttribute(element, "aria-selected", String(line === this.#selected));
+    setFlag(element, "data-active", line === this.#active);
+    setFlag(element, "data-error", error !== undefined);
   }
 
   /** @param {number} line @returns {string | undefined} */
