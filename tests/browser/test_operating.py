@@ -21,14 +21,13 @@ def mill(tmp_path: Path) -> Any:
 def test_the_machine_is_switched_on_and_homed_from_the_header_and_the_manual_page(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.wait_state("E-stop")
-    assert screen.page.is_disabled("#power")
+    screen.page.wait_for_selector("#power:disabled")
     screen.page.click("#estop:enabled")
     screen.wait_state("Machine off")
     screen.page.click("#power:enabled")
     screen.wait_state("Not homed")
     screen.page.click(".homing [data-joint='0']")
-    screen.page.wait_for_selector(".readout tr[data-axis=X][data-state=homed]")
-    assert screen.page.get_attribute(".readout tr[data-axis=Y]", "data-state") == "unhomed"
+    screen.page.wait_for_selector(".readout:has(tr[data-axis=X][data-state=homed]) tr[data-axis=Y][data-state=unhomed]")
     screen.page.click("#home-all")
     screen.wait_state("Ready")
 
@@ -92,7 +91,7 @@ def test_touch_off_takes_sums_and_inches(mill: int, open_screen: Any) -> None:
 def test_a_loaded_tool_is_measured_by_touch_off(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.power_up()
-    assert screen.page.is_disabled("[data-touchoff=tool]")
+    screen.page.wait_for_selector("[data-touchoff=tool]:disabled")
     screen.go("tools")
     screen.page.click("tr[data-tool='3'] button:has-text('Load')")
     screen.wait_text("T3 in the spindle")
@@ -155,6 +154,7 @@ def test_work_offsets_are_edited_in_their_table(mill: int, open_screen: Any) -> 
         wait_until(
             lambda: observer.call("offsets.read")["systems"][1]["offset"][0] == pytest.approx(25.4), "offset written"
         )
+    wait_until(lambda: field.input_value() == "25.400", "the table shows what was written")
     screen.page.click("tr:has(th:text-is('G55')) button:has-text('Use')")
     screen.wait_position("X", -25.4)
 
@@ -171,3 +171,20 @@ def test_the_tool_table_is_edited_one_tool_at_a_time(mill: int, open_screen: Any
     with WebClient(mill, name="observer") as observer:
         tool = next(tool for tool in observer.call("tools.read")["tools"] if tool["tool"] == 4)
         assert tool["offset"][2] == pytest.approx(36.5)
+
+
+def test_a_tool_that_was_opened_before_somebody_else_changed_the_table_is_not_saved(
+    mill: int, open_screen: Any, tmp_path: Path
+) -> None:
+    table = tmp_path / "mill_mm.tbl"
+    screen = open_screen(mill)
+    screen.power_up()
+    screen.go("tools")
+    screen.page.get_by_role("button", name="Edit T4").click()
+    screen.page.get_by_label("Remark").fill("of the older table")
+    table.write_text(f"{table.read_text()}T77 P77 ;from elsewhere\n")
+    screen.page.wait_for_selector("tr[data-tool='77']")
+    screen.press("Save", "dialog[open]")
+    screen.page.wait_for_selector("#toasts [data-kind=error]:has-text('the tool table was changed meanwhile')")
+    assert "T77 P77 ;from elsewhere" in table.read_text()
+    assert "of the older table" not in table.read_text()

@@ -24,6 +24,19 @@ export class CallError extends Error {
   }
 }
 
+/**
+ * For a question that is asked again and again: answers may overtake each other, and only that to the newest one counts.
+ * @returns {() => () => boolean} called with each question; what it gives says whether no newer one has been asked
+ */
+export function turns() {
+  let newest = 0;
+  return () => {
+    newest += 1;
+    const mine = newest;
+    return () => mine === newest;
+  };
+}
+
 /** @typedef {(frame: any) => void} Listener */
 
 export class Link {

@@ -4,6 +4,7 @@ import { field, fill, h, select, setText } from "../core/dom.js";
 import { confirm, openDialog } from "../core/dialog.js";
 import { evaluate } from "../core/expression.js";
 import { _ } from "../core/i18n.js";
+import { turns } from "../core/link.js";
 import { idle, operator, whyNoControl, whyNotHomed } from "../core/machine.js";
 import { registerPanel } from "../core/panels.js";
 import { coordinate, displayUnit, fixed, length, scale } from "../core/units.js";
@@ -23,12 +24,19 @@ registerPanel({
     let table = { version: null, tools: [] };
     const body = h("tbody");
     const search = h("input", { type: "search", class: "grow", placeholder: _("Search"), "aria-label": _("Search"), oninput: () => draw() });
+    const turn = turns();
+    let drawn = "";
     const read = async () => {
-      table = await app.call("tools.read").catch(() => table);
-      draw();
+      const newest = turn();
+      const found = await app.call("tools.read").catch(() => table);
+      if (!newest()) return;
+      table = found;
+      const wanted = JSON.stringify([table, app.v.tool_in_spindle, displayUnit(app.v)]);
+      if (wanted !== drawn) draw(); // rows that are drawn anew miss a press that is under way
+      drawn = wanted;
     };
-    const write = async (/** @type {any[]} */ tools) => {
-      const done = await app.act("tools.write", { version: table.version, tools });
+    const write = async (/** @type {unknown} */ version, /** @type {any[]} */ tools) => {
+      const done = await app.act("tools.write", { version, tools });
       await read();
       return done;
     };
@@ -42,11 +50,14 @@ registerPanel({
       app.release(body);
       fill(body, tools.map((tool) => row(app, tool, axes, () => edit(tool))));
     }
-    const edit = (/** @type {any} */ tool) =>
+    const edit = (/** @type {any} */ tool) => {
+      const { version, tools } = table; // as the operator sees them now; the server refuses what is based on an older table
+      const others = tools.filter((one) => one.tool !== tool.tool || one.pocket !== tool.pocket);
       editTool(app, tool, {
-        save: (changed) => write([...table.tools.filter((one) => one !== tool), changed].sort((a, b) => a.pocket - b.pocket)),
-        remove: () => write(table.tools.filter((one) => one !== tool)),
+        save: (changed) => write(version, [...others, changed].sort((a, b) => a.pocket - b.pocket)),
+        remove: () => write(version, others),
       });
+    };
     const add = () => {
       const free = 1 + Math.max(0, ...table.tools.map((tool) => tool.tool));
       const pocket = 1 + Math.max(0, ...table.tools.map((tool) => tool.pocket));
