@@ -4,6 +4,7 @@ import { fill, h, setPressed, setText } from "../core/dom.js";
 import { ask } from "../core/dialog.js";
 import { _ } from "../core/i18n.js";
 import { iconButton } from "../core/icons.js";
+import { turns } from "../core/link.js";
 import { whyNoControl } from "../core/machine.js";
 import { registerPanel } from "../core/panels.js";
 import { recall, remember } from "../core/prefs.js";
@@ -45,13 +46,15 @@ registerPanel({
       graph.hidden = !asGraph;
       read();
     } }, _("Graph of nets"));
+    const turn = turns();
     const read = async () => {
-      try {
-        if (asGraph) fill(graph, netGraph(await app.call("hal.nets", { filter: search.value })));
-        else drawTree(app, tree, count, await app.call("hal.tree", { filter: search.value, kinds: [...wanted] }), values, meters.add);
-      } catch {
-        // The error has been shown.
-      }
+      const newest = turn();
+      const nets = asGraph;
+      const asked = nets ? app.call("hal.nets", { filter: search.value }) : app.call("hal.tree", { filter: search.value, kinds: [...wanted] });
+      const found = await asked.catch(() => null);
+      if (!found || !newest()) return;
+      if (nets) fill(graph, netGraph(found));
+      else drawTree(app, tree, count, found, values, meters.add);
     };
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     let timer;

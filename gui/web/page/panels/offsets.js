@@ -4,6 +4,7 @@ import { fill, h, setText } from "../core/dom.js";
 import { confirm } from "../core/dialog.js";
 import { evaluate } from "../core/expression.js";
 import { _ } from "../core/i18n.js";
+import { turns } from "../core/link.js";
 import { whyNotHomed, whyNotManual } from "../core/machine.js";
 import { registerPanel } from "../core/panels.js";
 import { coordinate, displayUnit, fixed, scale } from "../core/units.js";
@@ -19,9 +20,14 @@ registerPanel({
     const table = h("table", { class: "offsets" });
     const others = h("table", { class: "offsets" });
     const unit = h("span", { class: "chip" });
+    const turn = turns();
+    let drawn = "";
     const read = async () => {
+      const newest = turn();
       const found = await app.call("offsets.read").catch(() => null);
-      if (!found) return;
+      const wanted = JSON.stringify([found, displayUnit(app.v)]);
+      if (!found || !newest() || wanted === drawn) return; // a table that is drawn anew loses what is being typed into it
+      drawn = wanted;
       setText(unit, displayUnit(app.v));
       app.release(table);
       fill(table, headRow(app, [_("Rotation"), _("Choice")]), h("tbody", null, found.systems.map((/** @type {any} */ system) => systemRow(app, system, found.active))));

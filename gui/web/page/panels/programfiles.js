@@ -4,6 +4,7 @@ import { fill, h, setText } from "../core/dom.js";
 import { ask, confirm, openDialog } from "../core/dialog.js";
 import { _ } from "../core/i18n.js";
 import { icon, iconButton } from "../core/icons.js";
+import { turns } from "../core/link.js";
 import { operator, whyNoControl } from "../core/machine.js";
 import { fileSize } from "../core/units.js";
 import { token } from "../core/token.js";
@@ -19,9 +20,12 @@ export function programFiles(app, edit) {
   const where = h("span", { class: "mono grow" });
   let folder = "";
   const status = h("p", { class: "muted", role: "status" });
+  const turn = turns();
   const draw = async (/** @type {string} */ wanted) => {
+    const newest = turn();
     try {
       const found = await app.call("program.list", { folder: wanted });
+      if (!newest()) return;
       folder = found.folder;
       setText(where, `/${folder}`);
       app.release(list);
