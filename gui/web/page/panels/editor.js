@@ -28,6 +28,7 @@ export async function editor(app, path, leave) {
   const errors = h("div", { class: "scroll errors", role: "list", "aria-label": _("Errors") });
   /** @type {Set<number>} */
   let wrong = new Set();
+  const drawTitle = () => setText(title, `${place ?? _("New program")}${area.value === saved ? "" : " ●"}`);
   const drawGutter = () => {
     const first = Math.floor(area.scrollTop / ROW);
     const total = countLines(area.value);
@@ -54,29 +55,32 @@ export async function editor(app, path, leave) {
   area.addEventListener("input", () => {
     clearTimeout(timer);
     timer = setTimeout(check, CHECK_PAUSE_MS);
-    setText(title, `${place ?? _("New program")} ${area.value === saved ? "" : "●"}`);
+    drawTitle();
     drawGutter();
   });
   area.addEventListener("scroll", drawGutter);
   new ResizeObserver(drawGutter).observe(area);
 
-  const save = async () => {
+  const saveNow = async () => {
     const target = place ?? (await ask(_("Save"), _("File name"), _("program.ngc")));
     if (!target) return false;
+    const text = area.value; // typing goes on meanwhile
     try {
-      ({ version } = await app.link.call("program.save", { path: target, text: area.value, version }));
+      ({ version } = await app.link.call("program.save", { path: target, text, version }));
     } catch (error) {
       if (/** @type {any} */ (error).code !== "conflict") return app.showError(error), false;
       const ours = await confirm(_("Save"), _("Somebody else has changed {path} meanwhile. Overwrite it with this text?", { path: target }), _("Overwrite"), "danger");
       if (!ours) return false;
       version = /** @type {any} */ (error).details.version;
-      return save();
+      return saveNow();
     }
     place = target;
-    saved = area.value;
-    setText(title, place);
+    saved = text;
+    drawTitle();
     return true;
   };
+  let saving = Promise.resolve(true);
+  const save = () => (saving = saving.then(saveNow)); // two at once would both replace the same version
   const close = async () => {
     if (area.value !== saved && !(await confirm(_("Editor"), _("Throw the changes away?"), _("Throw away"), "danger"))) return;
     app.release(element);
