@@ -99,6 +99,7 @@ function lineCheck(app, input, verdict) {
       show(outside.length ? "warn" : "ok", outside.length ? leaving(outside) : _("Checked, {n} moves", { n: found.moves }));
       return true;
     } catch (error) {
+      if (input.value.trim() !== text) return false;
       const { code, details, message } = /** @type {any} */ (error);
       const wrong = code === "gcode";
       show(wrong ? "danger" : "warn", details?.column ? _("Column {column}: {text}", { column: details.column, text: message }) : message);
