@@ -23,6 +23,7 @@ registerPanel({
     const trigger = h("div", { class: "row" });
     const status = h("span", { class: "chip" }, _("Stopped"));
     const plot = h("div", { class: "scope-plot grow" });
+    const curve = await plotter(plot); // first of all, or a record that is there at once would find nobody to draw it
     const names = h("datalist", { id: "scope-names" });
     const input = h("input", { type: "text", list: "scope-names", placeholder: _("Add a pin or signal"), "aria-label": _("Add a pin or signal"), class: "grow" });
     const draw = () => {
@@ -77,7 +78,6 @@ registerPanel({
       ),
     );
     draw();
-    const curve = await plotter(plot);
     app.link.on("scope", (frame) => {
       curve.show(frame);
       setText(status, frame.done && !settings.repeat ? _("Done") : _("Recording"));
