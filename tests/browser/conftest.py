@@ -23,6 +23,7 @@ ARGUMENTS = [
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    "--disable-gpu-watchdog",  # which takes a busy computer for a graphics driver that hangs
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",

@@ -18,6 +18,14 @@ LOADING_MS = 3 * TIMEOUT_MS  # the page is many files and compiles them
 EXPECTED = re.compile(r"WebSocket connection|status of 409")  # a cut network; an upload that asks whether to replace
 GRAPHICS = "GL Driver Message"
 SLOW_JOG = {"jog.linear": "600"}  # mm/min; preferences of a screen whose jogs are far from the limits for half a minute
+FILLED = {  # what a panel shows once the answers that it asks for when it is opened have come
+    "path": ".path-tools",
+    "offsets": "table.offsets tbody tr",
+    "tools": "tr[data-tool]",
+    "hal": ".hal-tree details",
+    "scope": "#scope-start",
+    "system": "table.system >> text=emcStatus",
+}
 PRESS_AGAIN = 2.0  # s without a jog until a button is pressed again
 
 
@@ -69,7 +77,12 @@ class Screen:
     ) -> None:
         self.problems: list[str] = []
         width, height = size
-        self.context = browser.new_context(viewport={"width": width, "height": height}, has_touch=touch, locale=lang)
+        self.context = browser.new_context(
+            viewport={"width": width, "height": height},
+            has_touch=touch,
+            locale=lang,
+            reduced_motion="reduce",  # colours have their values at once, not after a transition
+        )
         self.context.set_default_timeout(TIMEOUT_MS)
         self.context.set_default_navigation_timeout(LOADING_MS)
         self.page = self.context.new_page()
@@ -92,9 +105,11 @@ class Screen:
     # --- an operator's hands ---------------------------------------------------------------------------------------
 
     def go(self, panel: str) -> None:
-        """Open a page of the rail."""
+        """Open a page of the rail, and wait for what it shows."""
         self.page.click(f"#tab-{panel}")
         self.page.wait_for_selector(f"#panel-{panel}:visible")
+        if panel in FILLED:
+            self.page.wait_for_selector(f"#panel-{panel} {FILLED[panel]}")
 
     def press(self, name: str, scope: str = "body") -> None:
         """Click the visible button with this name."""

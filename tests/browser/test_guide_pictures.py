@@ -89,7 +89,7 @@ def take_the_program(screen: Screen) -> None:
     screen.page.click("#stop")
     screen.wait_state("Ready")
     screen.open_program("tools.ngc")
-    screen.page.click(".program-text .line[data-line='5']")
+    screen.page.click(".program-text .line[data-line='5']:has-text('G1 X0')")
     screen.page.click("#run-from:enabled")
     screen.page.wait_for_selector("dialog[open] .differences")
     take(screen, "run_from")

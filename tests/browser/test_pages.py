@@ -58,7 +58,6 @@ def test_no_page_has_accessibility_errors(mill: int, open_screen: Any) -> None:
     problems = {"the whole page": axe(screen)}
     for panel in PANELS:
         screen.go(panel)
-        screen.page.wait_for_timeout(200)  # lists are filled a moment after their panel is shown
         problems[panel] = axe(screen, f"#panel-{panel}")
     assert not {place: found for place, found in problems.items() if found}
 
@@ -78,13 +77,16 @@ def test_dialogs_have_no_accessibility_errors(mill: int, open_screen: Any) -> No
     screen = open_screen(mill)
     screen.power_up()
     screen.page.click("[data-touchoff=X]")
+    screen.page.wait_for_selector("dialog[open]:has-text('Touch off X')")
     assert not axe(screen)
     screen.page.keyboard.press("Escape")
     screen.page.click("#settings")
+    screen.page.wait_for_selector("dialog[open]:has-text('Display settings')")
     assert not axe(screen)
     screen.page.keyboard.press("Escape")
     screen.go("tools")
     screen.page.get_by_role("button", name="Edit T4").click()
+    screen.page.wait_for_selector("dialog[open]:has-text('Tool T4')")
     assert not axe(screen)
 
 
@@ -134,6 +136,7 @@ def test_the_keyboard_alone_reaches_every_control(mill: int, open_screen: Any) -
     assert page.evaluate("document.activeElement.id") == "estop"
     page.keyboard.press("Enter")
     screen.wait_state("Machine off")
+    page.wait_for_selector("#power:enabled")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.id") == "power"
     outline = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
@@ -144,11 +147,12 @@ def test_the_keyboard_alone_reaches_every_control(mill: int, open_screen: Any) -
     page.keyboard.press("ArrowDown")
     page.wait_for_selector("#panel-program:visible")
     page.keyboard.press("ArrowUp")
-    page.focus("#home-all")
+    page.wait_for_selector("#panel-manual:visible")
+    page.focus("#home-all:enabled")
     page.keyboard.press("Enter")
     screen.wait_state("Ready")
     screen.press("1 mm", ".increments")
-    page.focus("[data-jog='X+']")
+    page.focus("[data-jog='X+']:enabled")
     page.keyboard.press("Enter")
     screen.wait_position("X", 1)
 
