@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.halsession import environment, halcmd, run, script
+from tests.support.halsession import environment, halcmd, run, script, some_periods
 
 pytestmark = pytest.mark.process
 
@@ -224,11 +224,7 @@ start
 setp oil.trigger 1
 setp air.edge 0
 """
-    (tmp_path / "periods.py").write_text(
-        "import time\nfrom hal.core import Hal\n[thread] = Hal().segment.threads()\nfirst = thread.cycles\n"
-        "while thread.cycles < first + 5: time.sleep(0.01)\n"
-    )
-    said = script(tmp_path, text + f"loadusr -w {sys.executable} periods.py\nstop\n").stderr.splitlines()
+    said = script(tmp_path, f"{text}{some_periods(tmp_path)}stop\n").stderr.splitlines()
     assert said.count("Oil is low") == 1
     assert said.count("No air") == 1
 

@@ -16,7 +16,7 @@ from hal._calls import call
 from hal.finder import MODULES_VARIABLE
 from hal.realtime import REALTIME_VARIABLE, Host
 from nml.errors import HalError
-from tests.support.halsession import environment, script
+from tests.support.halsession import environment, script, some_periods
 
 pytestmark = [
     pytest.mark.process,
@@ -259,7 +259,7 @@ def test_loadrt_takes_a_compiled_file_and_threads_run_it(own_namespace: str, mod
     done = script(
         modules,
         f"loadrt {modules}/shift.so personality=1\nloadrt threads\naddf shift.0 thread1\nsetp shift.0.rate 1\nstart\n"
-        "loadusr -w sleep 0.3\nstop\ngetp shift.0.total\nunloadrt shift\nlist pin shift*\n",
+        f"{some_periods(modules)}stop\ngetp shift.0.total\nunloadrt shift\nlist pin shift*\n",
     )
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split()[0]) > 1.5

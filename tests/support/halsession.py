@@ -41,3 +41,21 @@ def script(tmp_path: Path, text: str, *options: str, program: str = "halrun") ->
     path = tmp_path / "test.hal"
     path.write_text(text)
     return run(program, *options, "-f", str(path), cwd=tmp_path)
+
+
+PERIODS = """\
+import time
+from hal.core import Hal
+
+[thread] = Hal().segment.threads()
+first = thread.cycles
+while thread.cycles < first + 5:
+    time.sleep(0.001)
+"""
+
+
+def some_periods(folder: Path) -> str:
+    """The line of a HAL file that waits until its one thread has run some periods from then on."""
+    path = folder / "periods.py"
+    path.write_text(PERIODS)
+    return f"loadusr -w {sys.executable} {path}\n"
