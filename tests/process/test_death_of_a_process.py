@@ -10,7 +10,7 @@ import linuxcnc
 from emctask.config import default_heartbeat_s
 from tests.process.test_running_programs import ACCELERATION, PERIOD, VELOCITY
 from tests.support import verify
-from tests.support.machine import Run, copy_mill, processes, running, traces, wait_until
+from tests.support.machine import HEARTBEAT, Run, copy_mill, processes, running, traces, wait_until
 from tests.support.recorder import hal_text, recorded
 
 pytestmark = pytest.mark.process
@@ -59,7 +59,7 @@ def test_when_a_process_dies_the_machine_stops_under_its_limits(tmp_path, victim
 def test_motion_alone_notices_that_task_is_dead_or_halted(tmp_path, blow):
     """The launcher is halted and cannot help."""
     data = tmp_path / "commands.bin"
-    ini = copy_mill(tmp_path, hal=hal_text(data))
+    ini = copy_mill(tmp_path, changes={HEARTBEAT: str(default_heartbeat_s())}, hal=hal_text(data))
     part = tmp_path / "part.ngc"
     part.write_text(PROGRAM)
     with running(ini, "--run", str(part), speed=SPEED) as run:
