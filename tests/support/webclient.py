@@ -146,7 +146,8 @@ class WebClient:
 
     def take(self) -> None:
         """Take the controls; the page before may still be about to let go of them."""
-        self.wait(lambda state: state["control"] is None or state["control"]["name"] == self.name, "controls are free")
+        mine = self.hello["client"]
+        self.wait(lambda state: state["control"] is None or state["control"]["client"] == mine, "controls are free")
         self.call("control.take")
 
     def jog_until(self, reached: Callable[[], object], velocity: float, **target: Any) -> int:
