@@ -95,12 +95,18 @@ class Screen:
             self.page.route(pattern, module(text))
         self.page.goto(f"http://127.0.0.1:{port}/" + (f"#token={token}" if token else ""))
         if wait:
-            self.page.wait_for_selector("#rail [role=tab]")
+            self.wait_loaded()
 
     def _console(self, message: Any) -> None:
         ignored = EXPECTED.search(message.text) or GRAPHICS in message.text
         if message.type in ("error", "warning") and not ignored:
             self.problems.append(f"console: {message.text}")
+
+    def wait_loaded(self) -> None:
+        """Wait for the page and, where it is shown at first, the picture; files that come in vain are errors."""
+        self.page.wait_for_selector("#rail [role=tab]")
+        if self.page.is_visible("#panel-path"):  # made together with the rail
+            self.page.wait_for_selector(f"#panel-path {FILLED['path']}")
 
     # --- an operator's hands ---------------------------------------------------------------------------------------
 

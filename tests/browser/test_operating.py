@@ -35,7 +35,7 @@ def test_the_machine_is_switched_on_and_homed_from_the_header_and_the_manual_pag
 def test_the_e_stop_button_stops_a_machine_in_motion(mill: int, open_screen: Any) -> None:
     screen = open_screen(mill)
     screen.power_up()
-    screen.send_mdi("G1 X250 F240")
+    screen.send_mdi("G1 X250 F60")
     wait_until(lambda: screen.position("X") > 1, "moving")
     screen.page.click("#estop")
     screen.wait_state("E-stop")

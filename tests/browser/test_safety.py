@@ -138,13 +138,14 @@ def test_without_the_right_token_nothing_is_shown(tmp_path: Path, open_screen: A
         screen.page.fill("#offline input", "0123456789abcdef-operator")
         screen.press("Connect", "#offline")
         screen.wait_state("E-stop")
+        screen.wait_loaded()
 
 
 def test_an_abort_from_one_screen_stops_what_another_started(mill: int, open_screen: Any) -> None:
     first = open_screen(mill)
     first.power_up()
     second = open_screen(mill)
-    first.send_mdi("G1 X250 F240")
+    first.send_mdi("G1 X250 F60")
     wait_until(lambda: second.position("X") > 2, "moving")
     second.page.click("#stop")
     second.wait_state("Ready")
