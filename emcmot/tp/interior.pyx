@@ -37,7 +37,7 @@ cdef enum:
     TRIALS = 14              # of shares of a step
 
 cdef double LEAD = 0.16          # s of the plan in force that are not touched: a new plan is ready before
-cdef double ENOUGH = 1.0         # s that a plan is long, at the speeds of its spans
+cdef double ENOUGH = 1.0         # s that a plan is long, at most, at the speeds of its spans
 cdef double FIRST_BARRIER = 0.3
 cdef double LAST_BARRIER = 0.004
 cdef double WEAKER = 0.25        # each barrier than the one before
@@ -90,13 +90,23 @@ cdef void plan_ahead(TpState* tp) noexcept nogil:
         visits -= _go_on(tp)
 
 
+cdef int _is_long(const TpState* tp) noexcept nogil:
+    """Whether so much of the path is laid that it is worth setting out."""
+    cdef double time = 0.0
+    cdef int64_t k = tp.active
+    while k < tp.span_tail and k < tp.active + LEAST_NEW and time < 0.5 * ENOUGH:
+        time += _span(tp, k).h / _span(tp, k).steady
+        k += 1
+    return k == tp.active + LEAST_NEW or time >= 0.5 * ENOUGH
+
+
 cdef int _is_due(TpState* tp) noexcept nogil:
     cdef const Span* span
     cdef double v
     if tp.active >= tp.span_tail:
         return 0
     if tp.active >= tp.planned:
-        return tp.span_tail - tp.active >= LEAST_NEW or (tp.end == END_STOP and tp.body_end >= tp.body_goal) or tp.reversing
+        return (tp.end == END_STOP and tp.body_end >= tp.body_goal) or tp.reversing or _is_long(tp)
     if tp.replan:
         return 1
     if tp.span_tail <= tp.planned:

@@ -17,7 +17,7 @@ cdef enum:
     LONGEST_RUN = 64             # raws in one chord
 
 cdef double SHARE = 0.5          # of the tolerance that chords may use,
-cdef double SMOOTH_SHARE = 0.3  # and where jerk is limited: there corners are as wide as several chords
+cdef double SMOOTH_SHARE = 0.1  # and where jerk is limited: there corners are as wide as several chords
 cdef double SHARPEST_JOINT = 0.3 # difference of unit tangents; sharper corners are meant, unless less than P stands out
 cdef double ALIKE = 0.75         # ratio of the tolerances of neighbours below which a run ends
 cdef double GROWTH = 1.3         # of one chord over the one before

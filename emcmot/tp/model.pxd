@@ -252,6 +252,11 @@ ctypedef struct TpState:
     double arc_start         # spacing of its knots about its ends; 0: the chain begins or ends there
     double arc_end
     double arc_step          # and at most between
+    int fitting              # kinks are missing of a run of short moves, the knots are its (see fit),
+    int fit_closed           # the last segment of the chain is its last,
+    int64_t fit_first        # this its first segment,
+    int64_t fit_near         # this the one at the first of the knots,
+    double fit_from          # and this where it is compared with its moves from
 
     double held              # d2u/dt2 chosen last, on span `held_span`, to be held to its end
     int64_t held_span

@@ -20,6 +20,7 @@ cdef double FIRST_PERIODS = 2.0      # of the span about a standstill
 cdef double GROWTH = 0.5             # of the time since then, or until then, at most
 cdef double SPEED_RESERVE = 1.2         # corners are made for the programmed speed times this
 cdef double SAME_PLACE = 1e-9        # of the way
+cdef double STANDING = 1e-8          # square of a derivative by the way that has no direction: the path turns back there
 
 
 cdef double _way_in(double v, double push, double jerk, double time) noexcept nogil:
@@ -79,15 +80,18 @@ cdef double _grown(const TpState* tp, double most, double time) noexcept nogil:
 
 
 cdef double turn(const Span* span) noexcept nogil:
-    """Change of the direction on a span, of its length."""
-    cdef double square = 1e-18, before = 1e-9, behind = 1e-9
+    """Change of the direction on a span, to its middle and from there on, of its length."""
+    cdef double first = 0.0, second = 0.0, before = STANDING, between = STANDING, behind = STANDING, middle
     cdef int j
     for j in range(span.n):
         if span.axis[j] < AXES:
-            square += (span.dq1[j] - span.dq0[j]) ** 2
+            middle = span.dq0[j] + 0.125 * span.h * (3.0 * span.ddq0[j] + span.ddq1[j])
+            first += (middle - span.dq0[j]) ** 2
+            second += (span.dq1[j] - middle) ** 2
             before += span.dq0[j] ** 2
+            between += middle ** 2
             behind += span.dq1[j] ** 2
-    return sqrt(square / fmax(before, behind))
+    return (sqrt(first) + sqrt(second)) / sqrt(fmax(between, fmax(before, behind)))
 
 
 cdef double _next_corner_speed(const TpState* tp, double place) noexcept nogil:

@@ -14,6 +14,7 @@ from libc.string cimport memcpy, memset
 
 from emcmot.tp.corner cimport TANGENT, corner_ratio, corner_tolerance, must_stop
 from emcmot.tp.cubic cimport corner_speed, first_speed, half_for_speed, limit_cubic
+from emcmot.tp.fit cimport begin_run, close_run, fit_next, run_ahead, run_begins, run_goes_on
 from emcmot.tp.geometry cimport derivatives, length, position
 from emcmot.tp.interior cimport forget_plan
 from emcmot.tp.joints cimport Curve, add_joints
@@ -80,7 +81,7 @@ cdef void choose_smoothing(TpState* tp) noexcept nogil:
 cdef void forget_chain(TpState* tp) noexcept nogil:
     """Nothing of what was laid goes on."""
     tp.end = END_STOP
-    tp.arc_open = 0
+    tp.arc_open = tp.fitting = 0
     tp.kink_head = tp.kink_tail = 0
 
 
@@ -96,9 +97,9 @@ cdef void extend_smoothly(TpState* tp) noexcept nogil:
             _decide_end(tp, &urgent)
         if _lay(tp):
             continue
-        if tp.arc_open and tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS and _spline_arc(tp):
+        if tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS and (tp.fitting and fit_next(tp) or tp.arc_open and _spline_arc(tp)):
             continue
-        if tp.end == END_OPEN or tp.arc_open:
+        if tp.end == END_OPEN or tp.arc_open or (tp.fitting and tp.fit_closed):
             return
         if tp.end == END_CORNER:
             _go_round(tp)
@@ -132,7 +133,7 @@ cdef void _go_round(TpState* tp) noexcept nogil:
     """Go on behind the corner that is decided."""
     if tp.crowded and tp.corner.sharpness > 0.0:
         _add_on_grid(tp)
-    else:
+    elif not tp.fitting:
         _add_kink(tp, &tp.corner)
     _join(tp, _seg(tp, tp.seg_built))
 
@@ -171,7 +172,7 @@ cdef void _decide_end(TpState* tp, int* urgent) noexcept nogil:
         if urgent[0] and tp.raw_next == tp.raw_tail and _laid_out(tp):
             tp.hold *= 0.5 if tp.w > 0.0 else 0.1
             urgent[0] = 0
-            if tp.hold < LAST_HOLD or tp.arc_open:
+            if tp.hold < LAST_HOLD or tp.arc_open or tp.fitting:
                 _stop(tp)
         return
     if must_stop(a, _seg(tp, tp.seg_built)):
@@ -180,11 +181,19 @@ cdef void _decide_end(TpState* tp, int* urgent) noexcept nogil:
     if tp.seg_tail - tp.seg_built < NEIGHBOURS and not urgent[0]:
         return
     _aim(tp, a, _seg(tp, tp.seg_built))
+    if tp.fitting and run_goes_on(tp) or not tp.fitting and run_begins(tp):
+        if not tp.fitting:
+            begin_run(tp)
+        tp.crowded = 0
+        tp.end = END_CORNER
+        return
     sharpness = tp.corner.sharpness
     tolerance = corner_tolerance(a, _seg(tp, tp.seg_built), sharpness)
     if sharpness > TANGENT and tolerance == 0.0:
         _stop(tp)
         return
+    if tp.fitting:
+        close_run(tp)
     if a.term != TP_TERM_BLEND and sharpness <= TANGENT:
         tolerance = EXACT_ROUNDING
     parts = (a.kind == TP_ARC) + (_seg(tp, tp.seg_built).kind == TP_ARC) + (sharpness > TANGENT)
@@ -214,12 +223,16 @@ cdef int _laid_out(const TpState* tp) noexcept nogil:
     """Whether no more can be laid before the end is decided."""
     if tp.arc_open:
         return tp.body_goal - tp.knots[KNOTS - 1] < OPEN_STEPS * tp.arc_step
+    if tp.fitting:
+        return 1
     return tp.body_end > tp.body_goal - tp.hold - SAME_PLACE
 
 
 cdef void _stop(TpState* tp) noexcept nogil:
     tp.end = END_STOP
     tp.arc_end = 0.0
+    if tp.fitting and not tp.fit_closed:
+        close_run(tp)
 
 
 cdef void _aim(TpState* tp, const Segment* a, Segment* b) noexcept nogil:
@@ -278,6 +291,8 @@ cdef int _round(TpState* tp, const Segment* a, const Segment* b, double toleranc
         widest = fmin(widest, _way(a))
     if b.kind == TP_ARC:
         widest = fmin(widest, _way(b))
+    elif run_ahead(tp, tp.seg_built + 1):
+        widest = fmin(widest, 0.5 * _way(b))
     widest = fmin(widest, fmin(corner.place - tp.arc_ended, corner.place - tp.body_end))
     tp.crowded = 0
     widest = _fair(tp, a, b, tolerance, widest)
@@ -458,7 +473,7 @@ cdef double _safe(const TpState* tp) noexcept nogil:
         limit -= tp.hold
     elif tp.end == END_CORNER:
         limit = fmin(tp.corner.start, limit - 2.0 * tp.arc_start)
-    if tp.arc_open:
+    if tp.arc_open or tp.fitting:
         limit = fmin(limit, tp.knots[1])
     return limit
 

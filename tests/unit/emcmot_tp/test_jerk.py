@@ -165,3 +165,23 @@ def test_short_moves_never_wait_for_the_queue_that_they_arrive_in(jerk, seconds)
             given += 1
         parts.append(planner.step_until_done(20))
     assert len(np.concatenate(parts)) * DT < seconds, "160 mm and one ramp each at both ends"
+
+
+def test_a_path_that_turns_back_twice_within_one_blend_is_run_to_its_end():
+    program = jerk_limited(jerk=129_000.0, tolerance=0.2, vel=36.0)
+    for y in (5.0125, 4.6074, 6.2044, 5.0647, 9.2960):
+        program.line(0, y, 0)
+    report = verify(program.run(), program.path, VMAX, AMAX, DT, 0.2, 1, np.full(9, 129_000.0))
+    assert max(report.worst_velocity, report.worst_acceleration, report.worst_jerk) <= ROUNDING
+    assert report.end == 0.0
+
+
+def test_short_rounded_moves_are_laid_as_the_curve_that_they_stand_for():
+    program, angles = jerk_limited(5000.0, tolerance=0.01), np.arange(1, 1201) * 2 * math.pi / 300
+    for x, y in np.round(np.column_stack([8 * np.cos(angles) - 8, 8 * np.sin(angles)]), 3):
+        program.line(x, y, 0, vel=85.0)
+    report = verify(program.run(), program.path, VMAX, AMAX, DT, 0.01, 1, np.full(9, 5000.0))
+    assert report.worst_jerk <= ROUNDING
+    assert report.deviation <= 0.01 + 1e-7
+    fastest = min((5000.0 * 8**2) ** (1 / 3), math.sqrt(500.0 * 8))  # an axis's jerk on a circle is v^3 / r^2
+    assert report.seconds < 1.08 * 2 * math.pi * 8 * 4 / fastest + 0.4
