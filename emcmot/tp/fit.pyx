@@ -15,6 +15,7 @@ from libc.stdint cimport int64_t
 
 from emcmot.tp.corner cimport corner_tolerance, must_stop
 from emcmot.tp.geometry cimport length
+from emcmot.tp.kink cimport add_kink
 from emcmot.tp.model cimport AXES, END_STOP, KINKS, KNOTS, Kink, Segment, TpState
 from emcmot.tp.tp cimport TP_LINE, TP_TERM_BLEND
 
@@ -112,8 +113,7 @@ cdef void begin_run(TpState* tp) noexcept nogil:
         kink.turn[i] = 0.0
         kink.out[i] = seg.rate[i] * seg.pace
     _moves_at(tp, place, kink.vertex)
-    tp.kinks[tp.kink_tail % KINKS] = kink
-    tp.kink_tail += 1
+    add_kink(tp, &kink)
 
 
 cdef void close_run(TpState* tp) noexcept nogil:
@@ -183,13 +183,13 @@ cdef int fit_next(TpState* tp) noexcept nogil:
         if _fits(tp):
             break
         step *= NARROWER
-    _add_kink(tp)
+    _complete_kink(tp)
     if tp.fit_closed and tp.knots[0] >= last.begin:
         tp.fitting = 0
     return 1
 
 
-cdef void _add_kink(TpState* tp) noexcept nogil:
+cdef void _complete_kink(TpState* tp) noexcept nogil:
     """The kink between the middle three knots."""
     cdef const double* k = tp.knots
     cdef double before[AXES]
@@ -208,8 +208,7 @@ cdef void _add_kink(TpState* tp) noexcept nogil:
         if tp.fit_closed and k[0] >= last.begin:
             kink.out[i] = last.rate[i] * last.pace
         kink.turn[i] = kink.out[i] - 3.0 * (kink.vertex[i] - before[i]) / (k[3] - k[0])
-    tp.kinks[tp.kink_tail % KINKS] = kink
-    tp.kink_tail += 1
+    add_kink(tp, &kink)
 
 
 # --- tolerance --------------------------------------------------------------------------------------------------------

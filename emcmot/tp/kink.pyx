@@ -6,7 +6,7 @@ second derivative is continuous and linear between their ends and tops, and the 
 overlap; what they do adds up. In the middle of a hat of half-width d the path is d / 6 times the change of direction from
 the corner, and less by the cube of the distance from there on: that makes the widths from the tolerance.
 
-An arc is a polyline as well, whose kinks and hats are those of a cubic spline through it (smooth). The chain of moves
+An arc, or a run of short moves, is a polyline as well, whose kinks and hats are those of a cubic spline (arcs, fit). The chain of moves
 from one stop to the next has one parameter, the *way*. Called by smooth.
 """
 
@@ -77,6 +77,11 @@ cdef void path_at(const TpState* tp, double way, Side side, double* q, double* d
             ddq[i] += kink.turn[i] * bend
 
 
+cdef void add_kink(TpState* tp, const Kink* kink) noexcept nogil:
+    tp.kinks[tp.kink_tail % KINKS] = kink[0]
+    tp.kink_tail += 1
+
+
 cdef void forget_passed(TpState* tp) noexcept nogil:
     """Drop the kinks that no longer count where the path goes on."""
     while tp.kink_head + 1 < tp.kink_tail:
@@ -118,13 +123,13 @@ cdef void taken(const TpState* tp, double place, double* off) noexcept nogil:
         off[i] = 0.0
     for k in range(tp.kink_head, tp.kink_tail):
         kink = _kink(tp, k)
-        if kink.sharpness != 0.0 and kink.to > place:
+        if kink.sharpness > 0.0 and kink.to > place:
             for i in range(AXES):
                 off[i] += hat_off(kink.turn[i], kink.to - kink.place, place - kink.place)
 
 
-cdef double corner_back(const TpState* tp, int count) noexcept nogil:
-    """Way back to the corner before the last `count` ones; 0: there are not as many."""
+cdef double reach_back(const TpState* tp, int count) noexcept nogil:
+    """Way back over `count` corners; without limit where there are less."""
     cdef int64_t k = tp.kink_tail - 1
     while k >= tp.kink_head:
         if _kink(tp, k).sharpness > 0.0:
@@ -132,13 +137,7 @@ cdef double corner_back(const TpState* tp, int count) noexcept nogil:
                 return tp.corner.place - _kink(tp, k).place
             count -= 1
         k -= 1
-    return 0.0
-
-
-cdef double reach_back(const TpState* tp, int count) noexcept nogil:
-    """Way back over `count` corners; without limit where there are less."""
-    cdef double way = corner_back(tp, count)
-    return way if way > 0.0 else INFINITY
+    return INFINITY
 
 
 cdef int _spares(const TpState* tp, const Kink* corner, double half) noexcept nogil:
@@ -149,7 +148,7 @@ cdef int _spares(const TpState* tp, const Kink* corner, double half) noexcept no
     cdef int i
     for k in range(tp.kink_head, tp.kink_tail):
         kink = _kink(tp, k)
-        if kink.sharpness != 0.0 and kink.place > corner.place - half:
+        if kink.sharpness > 0.0 and kink.place > corner.place - half:
             for i in range(AXES):
                 off[i] = kink.off[i] + hat_off(corner.turn[i], half, corner.place - kink.place)
             if length(off) > kink.tolerance:
@@ -180,6 +179,6 @@ cdef void size_corner(TpState* tp, Kink* corner, double tolerance, double widest
         return
     for k in range(tp.kink_head, tp.kink_tail):
         kink = &tp.kinks[k % KINKS]
-        if kink.sharpness != 0.0:
+        if kink.sharpness > 0.0:
             for i in range(AXES):
                 kink.off[i] += hat_off(corner.turn[i], half, corner.place - kink.place)

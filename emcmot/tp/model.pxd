@@ -123,7 +123,7 @@ ctypedef struct Kink:        # where the direction of the path changes, and the 
     double start             # of the hat,
     double middle            # where it is highest,
     double to                # and its end
-    double sharpness         # norm of `turn`, negative for the first of two parts of a corner; 0: no corner of the program
+    double sharpness         # norm of `turn`; 0: no corner of the program, or one of a run
     double tolerance         # of the corner,
     double off[AXES]         # and what hats, its own and others, have taken of it
     double turn[AXES]        # change of the direction
@@ -238,10 +238,6 @@ ctypedef struct TpState:
     Kink corner              # the one at the end of the last segment of the chain, where that is decided
     int end                  # ChainEnd
     double hold              # way before the end of the last segment that is not laid while its end is open
-    int crowded              # the corner's hat reaches other corners: it is put on a grid,
-    double grid_begin        # which begins here
-    double grid_step         # and has this spacing
-    double grid_used         # place of the last corner on it
     int64_t laying           # segment that the next span is of
     double slow_place        # newest place that is passed slowly, or at rest,
     double slow_speed        # and how fast

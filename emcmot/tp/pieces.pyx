@@ -103,6 +103,6 @@ cdef double _next_corner_speed(const TpState* tp, double place) noexcept nogil:
         speed = corner_speed(tp, tp.corner.turn, tp.corner.to - tp.corner.place)
     for k in range(tp.kink_head, tp.kink_tail):
         kink = &tp.kinks[k % KINKS]
-        if kink.sharpness != 0.0 and fabs(kink.start - place) <= SAME_PLACE:
+        if kink.sharpness > 0.0 and fabs(kink.start - place) <= SAME_PLACE:
             speed = fmin(speed, corner_speed(tp, kink.turn, kink.to - kink.place))
     return speed

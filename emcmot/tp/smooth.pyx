@@ -1,27 +1,27 @@
 """The path where jerk is limited: lays cubic spans of queued moves, from one stop to the next.
 
 Moves between two stops are a *chain*. Its corners become kinks (see kink) as wide as the tolerance, the room and the programmed
-speed allow. An arc becomes a polyline whose kinks have the hats of a cubic spline through it, with knots
-that are close where it begins and ends, because there the curvature must come and go within the tolerance, and wide apart
-between. The path is laid up to where the next corner may begin; the end of the queue stays open until the machine
+speed allow; arcs, and runs of short moves, become polylines whose kinks have the hats of a cubic spline (see arcs, fit).
+The path is laid up to where the next corner may begin; the end of the queue stays open until the machine
 would have to slow down for want of path, because what is laid to its end is a stop.
 Called by advance; jerk moves the machine along the spans.
 """
 
-from libc.math cimport INFINITY, fabs, floor, fmax, fmin, sqrt
+from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 from libc.string cimport memcpy, memset
 
+from emcmot.tp.arcs cimport arc_laid_out, end_spacing, open_arc, spline_arc
 from emcmot.tp.corner cimport TANGENT, corner_ratio, corner_tolerance, must_stop
 from emcmot.tp.cubic cimport corner_speed, first_speed, half_for_speed, limit_cubic
 from emcmot.tp.fit cimport begin_run, close_run, fit_next, run_ahead, run_begins, run_goes_on
-from emcmot.tp.geometry cimport derivatives, length, position
+from emcmot.tp.geometry cimport derivatives, length
 from emcmot.tp.interior cimport forget_plan
 from emcmot.tp.joints cimport Curve, add_joints
-from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, corner_back, forget_passed, hat_off, next_node, path_at
+from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, add_kink, forget_passed, hat_off, next_node, path_at
 from emcmot.tp.kink cimport reach_back, size_corner, taken
 from emcmot.tp.merge cimport take_segment
-from emcmot.tp.model cimport AXES, END_CORNER, END_OPEN, END_STOP, KINKS, KNOTS, SPAN_CUBIC, SPAN_LINE
+from emcmot.tp.model cimport AXES, END_CORNER, END_OPEN, END_STOP, KINKS, SPAN_CUBIC, SPAN_LINE
 from emcmot.tp.model cimport Kink, Segment, Span, TpState
 from emcmot.tp.pieces cimport piece, turn
 from emcmot.tp.spans cimport keep_derivatives, limit_speed, new_span
@@ -34,19 +34,12 @@ cdef enum:
     NEIGHBOURS = 8               # corners on each side that a hat may reach, and that are known when it is made
     SHORTENINGS = 10
     FITTINGS = 24
-    GRID_STEPS = 3               # of the half-width of a hat
 
 cdef double EXACT_ROUNDING = 1e-3    # lu; what exact path mode gives to the ends of arcs
-cdef double ARC_END_MISS = 0.045     # an arc's end is off by this times curvature * spacing^2
-cdef double ARC_END_TWIST = 0.6      # and the third derivative there is this times curvature / spacing
-cdef double ARC_STEP = 0.1           # rad; spacing of knots on arcs
-cdef double OPEN_STEPS = 4.0         # of knots before the end of an arc, where that is open
-cdef double KNOT_GROWTH = 2.0        # of one spacing to the next
 cdef double SPEED_RESERVE = 1.2      # corners are made for the programmed speed times this,
 cdef double WIDER = 2.0              # this much wider,
 cdef double SLIGHTLY_WIDER = 8.0     # and slight ones even more: they are as many as a curve has moves
 cdef double SLIGHT = 0.1
-cdef double GRID_WIDER = 2.0         # hats may be narrower than the tolerance allows by this before the grid changes
 cdef double FAIR_SHARE = 0.9        # of the tolerance that corners plan with; their neighbours need not be as wide
 cdef double LEAST_HAT = 0.01         # of the shorter move
 cdef double MUCH_LESS = 0.5          # tolerance of another corner, which this one does not reach
@@ -97,7 +90,7 @@ cdef void extend_smoothly(TpState* tp) noexcept nogil:
             _decide_end(tp, &urgent)
         if _lay(tp):
             continue
-        if tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS and (tp.fitting and fit_next(tp) or tp.arc_open and _spline_arc(tp)):
+        if tp.kink_tail - tp.kink_head + KINKS_IN_WORK < KINKS and (tp.fitting and fit_next(tp) or tp.arc_open and spline_arc(tp)):
             continue
         if tp.end == END_OPEN or tp.arc_open or (tp.fitting and tp.fit_closed):
             return
@@ -117,30 +110,22 @@ cdef void _begin_chain(TpState* tp) noexcept nogil:
     seg.begin = 0.0
     seg.pace = 1.0
     tp.kink_head = tp.kink_tail = 0
-    tp.body_end = tp.arc_ended = tp.grid_step = 0.0
-    tp.crowded = 0
+    tp.body_end = tp.arc_ended = 0.0
     tp.laying = tp.seg_built
     tp.arc_start = 0.0
     memset(&tp.corner, 0, sizeof(Kink))
     if seg.kind != TP_ARC:
         memcpy(tp.corner.vertex, seg.start, sizeof(tp.corner.vertex))
         memcpy(tp.corner.out, seg.rate, sizeof(tp.corner.out))
-        _add_kink(tp, &tp.corner)
+        add_kink(tp, &tp.corner)
     _join(tp, seg)
 
 
 cdef void _go_round(TpState* tp) noexcept nogil:
     """Go on behind the corner that is decided."""
-    if tp.crowded and tp.corner.sharpness > 0.0:
-        _add_on_grid(tp)
-    elif not tp.fitting:
-        _add_kink(tp, &tp.corner)
+    if not tp.fitting:
+        add_kink(tp, &tp.corner)
     _join(tp, _seg(tp, tp.seg_built))
-
-
-cdef void _add_kink(TpState* tp, const Kink* kink) noexcept nogil:
-    tp.kinks[tp.kink_tail % KINKS] = kink[0]
-    tp.kink_tail += 1
 
 
 cdef void _join(TpState* tp, Segment* seg) noexcept nogil:
@@ -151,14 +136,8 @@ cdef void _join(TpState* tp, Segment* seg) noexcept nogil:
     tp.body_goal = seg.begin + _way(seg)
     tp.end = END_OPEN
     tp.hold = fmax(0.5 * _way(seg), 2.0 * half)
-    if seg.kind != TP_ARC:
-        return
-    tp.arc_open = 1
-    tp.arc_step = fmin(ARC_STEP / fabs(seg.omega * seg.pace), 0.25 * _way(seg))
-    tp.hold = fmin(tp.hold, fmax(2.0 * half, OPEN_STEPS * tp.arc_step))
-    for k in range(KNOTS - 1):
-        tp.knots[k] = seg.begin + (k - KNOTS + 2) * tp.arc_start
-    tp.knots[KNOTS - 1] = seg.begin + fmin(tp.arc_step, tp.arc_start if tp.arc_start > 0.0 else tp.arc_step)
+    if seg.kind == TP_ARC:
+        open_arc(tp, seg, half)
 
 
 # --- corners ----------------------------------------------------------------------------------------------------------
@@ -184,7 +163,6 @@ cdef void _decide_end(TpState* tp, int* urgent) noexcept nogil:
     if tp.fitting and run_goes_on(tp) or not tp.fitting and run_begins(tp):
         if not tp.fitting:
             begin_run(tp)
-        tp.crowded = 0
         tp.end = END_CORNER
         return
     sharpness = tp.corner.sharpness
@@ -197,8 +175,8 @@ cdef void _decide_end(TpState* tp, int* urgent) noexcept nogil:
     if a.term != TP_TERM_BLEND and sharpness <= TANGENT:
         tolerance = EXACT_ROUNDING
     parts = (a.kind == TP_ARC) + (_seg(tp, tp.seg_built).kind == TP_ARC) + (sharpness > TANGENT)
-    tp.arc_end = _end_spacing(tp, a, a.length, tolerance / parts) if a.kind == TP_ARC else 0.0
-    tp.arc_start = _end_spacing(tp, _seg(tp, tp.seg_built), 0.0, tolerance / parts) if _seg(tp, tp.seg_built).kind == TP_ARC else 0.0
+    tp.arc_end = end_spacing(tp, a, a.length, tolerance / parts) if a.kind == TP_ARC else 0.0
+    tp.arc_start = end_spacing(tp, _seg(tp, tp.seg_built), 0.0, tolerance / parts) if _seg(tp, tp.seg_built).kind == TP_ARC else 0.0
     if sharpness <= TANGENT or _round(tp, a, _seg(tp, tp.seg_built), tolerance / parts) or _committed(tp):
         tp.end = END_CORNER
     else:
@@ -214,7 +192,6 @@ cdef int _committed(TpState* tp) noexcept nogil:
             if tp.corner.to < tp.corner.place + least:
                 tp.corner.start = tp.corner.place - least
                 tp.corner.to = tp.corner.place + least
-                tp.crowded = 0
             return 1
     return 0
 
@@ -222,7 +199,7 @@ cdef int _committed(TpState* tp) noexcept nogil:
 cdef int _laid_out(const TpState* tp) noexcept nogil:
     """Whether no more can be laid before the end is decided."""
     if tp.arc_open:
-        return tp.body_goal - tp.knots[KNOTS - 1] < OPEN_STEPS * tp.arc_step
+        return arc_laid_out(tp)
     if tp.fitting:
         return 1
     return tp.body_end > tp.body_goal - tp.hold - SAME_PLACE
@@ -257,26 +234,6 @@ cdef void _aim(TpState* tp, const Segment* a, Segment* b) noexcept nogil:
         corner.sharpness = 0.0
 
 
-cdef double _end_spacing(const TpState* tp, const Segment* arc, double u, double tolerance) noexcept nogil:
-    """Spacing of the knots about an end of an arc."""
-    cdef double dq[AXES]
-    cdef double ddq[AXES]
-    cdef double curvature = 0.0, speed, spacing = 0.0
-    cdef int i
-    derivatives(arc, u, dq, ddq)
-    speed = SPEED_RESERVE * fmin(arc.vel, arc.vel_max)
-    for i in range(AXES):
-        curvature += ddq[i] * ddq[i]
-        spacing = fmax(spacing, ARC_END_TWIST * fabs(ddq[i]) * speed * speed * speed / tp.jmax[i])
-    spacing = fmin(WIDER * spacing / arc.pace, 0.25 * _way(arc))
-    spacing = fmin(spacing, 0.25 * _way(_seg(tp, tp.seg_built - (u == 0.0))))
-    if u > 0.0:
-        spacing = fmin(spacing, 0.25 * _seg(tp, tp.seg_built).length / _seg(tp, tp.seg_built).pace)
-    else:
-        spacing = fmin(spacing, 0.5 * (tp.body_goal - tp.body_end))
-    return fmin(spacing, sqrt(tolerance / (ARC_END_MISS * sqrt(curvature))) / arc.pace)
-
-
 cdef int _round(TpState* tp, const Segment* a, const Segment* b, double tolerance) noexcept nogil:
     """Give the corner its hat; 0 where it is passed more slowly than after a stop."""
     cdef Kink* corner = &tp.corner
@@ -294,11 +251,8 @@ cdef int _round(TpState* tp, const Segment* a, const Segment* b, double toleranc
     elif run_ahead(tp, tp.seg_built + 1):
         widest = fmin(widest, 0.5 * _way(b))
     widest = fmin(widest, fmin(corner.place - tp.arc_ended, corner.place - tp.body_end))
-    tp.crowded = 0
     widest = _fair(tp, a, b, tolerance, widest)
     size_corner(tp, corner, tolerance, widest)
-    if tp.crowded:
-        _lay_grid(tp, (corner.to - corner.place) / (1.0 + 1.0 / GRID_STEPS))
     for i in range(AXES):
         before[i] = corner.out[i] - corner.turn[i]
     return corner.to > corner.place and corner_speed(tp, corner.turn, corner.to - corner.place) >= fmax(
@@ -350,118 +304,7 @@ cdef double _fair(TpState* tp, const Segment* a, const Segment* b, double tolera
         if used <= FAIR_SHARE * tolerance:
             break
         half *= fmax(0.5, 0.99 * sqrt(FAIR_SHARE * tolerance / used))
-    tp.crowded = (n > 0 and away[0] < half) or 0.0 < corner_back(tp, 0) < half
     return half
-
-
-cdef void _lay_grid(TpState* tp, double half) noexcept nogil:
-    """Choose the grid that the hats of a crowd of corners end and have their tops on: that of the corner before, if it fits."""
-    cdef double step = half / GRID_STEPS
-    if tp.grid_step > step or tp.grid_step * GRID_WIDER < step or tp.corner.place - tp.grid_used > GRID_STEPS * tp.grid_step:
-        tp.grid_step = step
-        tp.grid_begin = tp.corner.place
-    tp.grid_used = tp.corner.place
-    tp.corner.start = fmax(0.0, tp.corner.place - (GRID_STEPS + 1) * tp.grid_step)
-
-
-cdef void _add_on_grid(TpState* tp) noexcept nogil:
-    """Share a corner among two places of the grid, each with a hat, so that area and centre of gravity stay the same."""
-    cdef const Kink* corner = &tp.corner
-    cdef Kink part = corner[0]
-    cdef double step = tp.grid_step, number = floor((corner.place - tp.grid_begin) / step)
-    cdef double share = (corner.place - tp.grid_begin) / step - number
-    cdef int i, k
-    for k in range(2):
-        part.place = part.middle = tp.grid_begin + (number + k) * step
-        part.start = tp.grid_begin + (number + k - GRID_STEPS) * step
-        part.to = tp.grid_begin + (number + k + GRID_STEPS) * step
-        part.sharpness = share * corner.sharpness if k else -(1.0 - share) * corner.sharpness
-        for i in range(AXES):
-            part.turn[i] = (share if k else 1.0 - share) * corner.turn[i]
-            part.out[i] = corner.out[i] - (0.0 if k else share) * corner.turn[i]
-            part.vertex[i] = corner.vertex[i] + (part.place - corner.place) * (corner.out[i] - (0.0 if k else corner.turn[i]))
-        if k == 0 or share > 0.0:
-            _add_kink(tp, &part)
-
-
-# --- arcs -------------------------------------------------------------------------------------------------------------
-
-cdef void _arc_point(const TpState* tp, const Segment* arc, const double* knots, double* q) noexcept nogil:
-    """Control point of a cubic spline for three knots: exact for parabolas, along the arc and its tangents beyond."""
-    cdef double dq[AXES]
-    cdef double ddq[AXES]
-    cdef double place = (knots[0] + knots[1] + knots[2]) / 3.0
-    cdef double spread = (
-        (knots[1] - knots[0]) ** 2 + (knots[2] - knots[1]) ** 2 + (knots[2] - knots[0]) ** 2) / 18.0
-    cdef double u = (place - arc.begin) * arc.pace, least = SAME_PLACE * arc.length, weight = 1.0
-    cdef int i
-    if u < least:
-        weight = 0.5 if u > -least else 0.0
-    elif u > arc.length - least:
-        weight = 0.5 if u < arc.length + least else 0.0
-    weight *= -0.5 * spread * arc.pace * arc.pace
-    derivatives(arc, fmax(0.0, fmin(arc.length, u)), dq, ddq)
-    position(arc, fmax(0.0, u), q)
-    for i in range(AXES):
-        q[i] += weight * ddq[i]
-        if u < 0.0:
-            q[i] += u * dq[i]
-        elif u > arc.length:
-            q[i] += (u - arc.length) * dq[i]
-
-
-cdef int _spline_arc(TpState* tp) noexcept nogil:
-    """Add the next kink of the open arc; 0 where that must wait for the decision on its end."""
-    cdef const Segment* arc = _seg(tp, tp.seg_built - 1)
-    cdef const double* k = tp.knots
-    cdef double before[AXES]
-    cdef double behind[AXES]
-    cdef double unused[AXES]
-    cdef double length, next_length, end = tp.body_goal
-    cdef Kink kink
-    cdef int i, done
-    if tp.end == END_OPEN and _laid_out(tp):
-        return 0
-    kink.sharpness = 0.0
-    kink.start, kink.middle, kink.to = k[1], k[2], k[3]
-    kink.place = (k[1] + k[2] + k[3]) / 3.0
-    done = k[2] >= end - SAME_PLACE and (tp.arc_end == 0.0 or k[1] >= end - SAME_PLACE)
-    _arc_point(tp, arc, k, before)
-    _arc_point(tp, arc, k + 1, kink.vertex)
-    _arc_point(tp, arc, k + 2, behind)
-    length = (k[3] - k[0]) / 3.0
-    next_length = (k[4] - k[1]) / 3.0
-    if done and tp.arc_end > 0.0:
-        derivatives(arc, arc.length, kink.out, unused)
-        for i in range(AXES):
-            kink.out[i] *= arc.pace
-    else:
-        for i in range(AXES):
-            kink.out[i] = (behind[i] - kink.vertex[i]) / next_length
-    for i in range(AXES):
-        kink.turn[i] = kink.out[i] - (kink.vertex[i] - before[i]) / length if length > 0.0 else 0.0
-    _add_kink(tp, &kink)
-    if done:
-        tp.arc_open = 0
-        tp.arc_ended = end
-        return 1
-    for i in range(KNOTS - 1):
-        tp.knots[i] = tp.knots[i + 1]
-    tp.knots[KNOTS - 1] = _next_knot(tp, end)
-    return 1
-
-
-cdef double _next_knot(const TpState* tp, double end) noexcept nogil:
-    """Knots grow apart from the start of an arc on, and come together towards its end."""
-    cdef double last = tp.knots[KNOTS - 2], left = end - last
-    cdef double step = fmin(KNOT_GROWTH * (last - tp.knots[KNOTS - 3]), tp.arc_step)
-    if left <= SAME_PLACE:
-        return last + tp.arc_end if tp.arc_end > 0.0 else end
-    if step <= 0.0:
-        step = tp.arc_step
-    if tp.end != END_OPEN and tp.arc_end > 0.0:
-        step = fmin(step, fmax(tp.arc_end, 0.5 * (left + tp.arc_end)))
-    return end if left < 1.5 * step else last + step
 
 
 # --- spans ------------------------------------------------------------------------------------------------------------
