@@ -37,7 +37,7 @@ cdef int64_t current_segment(const TpState* tp) noexcept nogil:
     span = _span(tp, tp.active)
     if span.kind == SPAN_CUBIC:
         index = span.seg
-        way = _seg(tp, index).begin + reached(tp, span)
+        way = reached(tp, span)
         while index + 1 < tp.seg_built and _seg(tp, index + 1).begin > 0.0 and way >= _seg(tp, index + 1).begin:
             index += 1
         return index

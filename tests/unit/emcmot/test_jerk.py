@@ -64,3 +64,17 @@ def test_a_negative_jerk_is_refused() -> None:
     m = mill("coord")
     assert m.send(C.SET_JOINT_JERK_LIMIT, joint=0, jerk=-1.0) != 0
     assert "is not a number that is not negative" in m.errors()[0]
+
+
+def test_an_output_changes_where_its_short_move_begins() -> None:
+    m = mill("coord")
+    m.send(C.SET_JERK, jerk=4e4)
+    m.send(C.SET_PLANNER_TYPE, mode=1)
+    m.step(2)
+    for n in range(1, 601):
+        if n == 300:
+            m.send(C.SET_DOUT, now=0, out=0, start=1)
+        line(m, 0.05 * n, 10 - 0.0005 * (300 - n) ** 2 / 9, id=n, vel=50.0, tolerance=0.02)
+    while not m["motion.digital-out-00"]:
+        m.step()
+    assert m["axis.x.pos-cmd"] == pytest.approx(0.05 * 299, abs=0.07)

@@ -185,3 +185,15 @@ def test_short_rounded_moves_are_laid_as_the_curve_that_they_stand_for():
     assert report.deviation <= 0.01 + 1e-7
     fastest = min((5000.0 * 8**2) ** (1 / 3), math.sqrt(500.0 * 8))  # an axis's jerk on a circle is v^3 / r^2
     assert report.seconds < 1.08 * 2 * math.pi * 8 * 4 / fastest + 0.4
+
+
+def test_the_move_that_is_reported_is_the_one_where_the_machine_is():
+    program = jerk_limited(40_000.0, tolerance=0.02)
+    for n in range(1, 601):
+        program.line(0.05 * n, 10 - 0.0005 * (300 - n) ** 2 / 9, 0, vel=50.0)
+    while not program.planner.status()["done"]:
+        program.planner.step(25)
+        status = program.planner.status()
+        if status["id"] > 1:
+            assert status["id"] == pytest.approx(status["pos"][0] / 0.05, abs=2.0)
+    assert status["pos"][0] == 30.0
