@@ -62,6 +62,18 @@ def test_the_machine_moves_for_as_long_as_the_forecast_says(tmp_path, name, jerk
     assert (largest_jerk(recorded(data), 0.001) <= JERK * 1.001) == jerk
 
 
+def test_the_forecast_of_short_moves_under_limited_jerk_is_the_machines_time(tmp_path):
+    data, program = tmp_path / "commands.bin", tmp_path / "curve.ngc"
+    t = 0.002 * np.arange(1, 4001)
+    radius = 30 + 5 * np.sin(7 * t)
+    points = np.column_stack([radius * np.cos(t) + 50, radius * np.sin(t) + 50])
+    program.write_text("G21 G90 G64 P0.01\nG1 F2400\n" + "".join(f"X{x:.3f} Y{y:.3f}\n" for x, y in points) + "M2\n")
+    ini = copy_mill(tmp_path, hal=hal_text(data))
+    limit_jerk(ini)
+    compare(ini, data, program)
+    assert largest_jerk(recorded(data), 0.001) <= JERK * 1.001
+
+
 @pytest.mark.skipif(not SAMPLES.is_dir(), reason="Debian's LinuxCNC is not installed")
 @pytest.mark.parametrize("name", ["3D_Chips", "3dtest", "comp", "polar"])
 def test_the_forecast_of_linuxcncs_samples_is_the_machines_time(tmp_path, name):
