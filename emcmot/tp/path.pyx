@@ -17,7 +17,7 @@ from emcmot.tp.geometry cimport derivatives, norm
 from emcmot.tp.joints cimport Curve, add_joints
 from emcmot.tp.limits cimport acceleration_range, entry_limit
 from emcmot.tp.merge cimport take_segment
-from emcmot.tp.model cimport AXES, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
+from emcmot.tp.model cimport AXES, BACK_RING, SPAN_CURVE, SPAN_BLEND, SPAN_LINE, UNIT_XYZ, Segment, Span, TpState
 from emcmot.tp.spans cimport keep_derivatives, limit_speed, new_span
 from emcmot.tp.tp cimport TP_AF_ENABLED, TP_ARC, TP_FS_ENABLED
 
@@ -212,7 +212,7 @@ cdef void extend(TpState* tp) noexcept nogil:
     """
     cdef int steps = 0, urgent
     cdef int64_t last, spans
-    while steps < STEPS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP < tp.span_mask:
+    while steps < STEPS_PER_PERIOD and tp.span_tail - tp.active + 2 * SPANS_PER_STEP + BACK_RING < tp.span_mask:
         if tp.seg_tail - tp.seg_head + 2 >= tp.seg_mask:
             return
         steps += 1

@@ -21,7 +21,7 @@ from emcmot.tp.joints cimport Curve, add_joints
 from emcmot.tp.kink cimport SIDE_BEFORE, SIDE_BEHIND, add_kink, forget_passed, hat_off, next_node, path_at
 from emcmot.tp.kink cimport reach_back, size_corner, taken
 from emcmot.tp.merge cimport take_segment
-from emcmot.tp.model cimport AXES, END_CORNER, END_OPEN, END_STOP, KINKS, SPAN_CUBIC, SPAN_LINE
+from emcmot.tp.model cimport AXES, BACK_RING, END_CORNER, END_OPEN, END_STOP, KINKS, SPAN_CUBIC, SPAN_LINE
 from emcmot.tp.model cimport Kink, Segment, Span, TpState
 from emcmot.tp.pieces cimport piece, turn
 from emcmot.tp.spans cimport keep_derivatives, limit_speed, new_span
@@ -31,6 +31,7 @@ cdef enum:
     STEPS_PER_PERIOD = 96
     KINKS_IN_WORK = 16           # room that a step needs in their ring
     SPANS_IN_WORK = 16
+    SEGMENTS_BEHIND = 64         # the machine, at which a run may still look
     NEIGHBOURS = 8               # corners on each side that a hat may reach, and that are known when it is made
     SHORTENINGS = 10
     FITTINGS = 24
@@ -82,7 +83,9 @@ cdef void extend_smoothly(TpState* tp) noexcept nogil:
     """Lay the path ahead, as far as rings and this period's share of work allow."""
     cdef int step, urgent = tp.hungry, more = 1
     for step in range(STEPS_PER_PERIOD):
-        if tp.span_tail - tp.active + SPANS_IN_WORK >= tp.span_mask or tp.seg_tail - tp.seg_head + NEIGHBOURS + 2 >= tp.seg_mask:
+        if tp.span_tail - tp.active + SPANS_IN_WORK + BACK_RING >= tp.span_mask:
+            return
+        if tp.seg_tail - tp.seg_head + NEIGHBOURS + SEGMENTS_BEHIND >= tp.seg_mask:
             return
         if more and tp.seg_tail - tp.seg_built < NEIGHBOURS:
             more = take_segment(tp, urgent and tp.seg_built == tp.seg_tail)

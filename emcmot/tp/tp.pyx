@@ -25,7 +25,7 @@ same_size(__name__, "TpStatus", sizeof(TpStatus))
 
 cdef enum:
     SPAN_RING = 8192
-    SEGMENT_RING = 4096
+    SEGMENT_RING = 8192
     PAGE = 4096                  # bytes
     RAW_MARGIN = 8               # raws that a blend still needs behind the executing one
     RAW_HISTORY = 1024           # executed ones that are kept for a reverse run

@@ -190,3 +190,26 @@ def test_the_way_back_is_as_long_as_the_history_in_a_long_program_that_goes_on_b
     positions = np.vstack(parts)
     check_limits(positions, np.zeros(9))
     assert positions[-1, 0] == 0.05 * count
+
+
+@pytest.mark.parametrize(("jerk", "moves"), [(0.0, 30), (50_000.0, 10)])
+def test_the_way_back_is_whole_while_the_queue_is_full(jerk, moves):
+    program = Program(tolerance=0.01)
+    planner = program.planner
+    for axis in range(9):
+        planner.set_limits(axis, VMAX[axis], AMAX[axis], jerk)
+    planner.limit_jerk(jerk > 0.0)
+    points = [(0.2 * (k % 2), 0.01 * k, 0) for k in range(1, 6001)]
+    parts, given = [], 0
+    while planner.status()["id"] < 1500:
+        while given < len(points) and planner.add_line([*points[given], *[0] * 6], 60.0, tolerance=0.01, id=given + 1):
+            given += 1
+        parts.append(planner.step(50))
+    assert planner.status()["depth"] > 3900
+    parts.append(come_to_rest(planner))
+    there = np.vstack(parts)
+    assert planner.reverse(True)
+    planner.resume()
+    back = planner.step(1500)
+    assert back[-1, 1] < there[-1, 1] - 0.01 * moves
+    assert max(distance_from(there, q) for q in back[::7]) < 0.5 * AMAX.max() * DT**2
