@@ -89,9 +89,11 @@ def test_what_the_realtime_host_has_to_say_reaches_the_terminal_once(tmp_path):
         "open('told', 'w').close()\nos.kill(os.getpid(), 9)\n",
     )
     script(tmp_path / "waiting", SCREEN)
-    script(tmp_path / "screen", "#!/bin/sh\nwhile halcmd list comp | grep -q short; do sleep 0.1; done\nsleep 0.5\n")
+    script(tmp_path / "screen", "#!/bin/sh\nwhile [ ! -e heard ]; do sleep 0.1; done\n")
     ini = copy_mill(tmp_path, changes={"DISPLAY.DISPLAY": "./screen"}, hal="loadusr ./short\nloadusr -w ./waiting\n")
     run = Run(ini, speed=10.0)
+    wait_until(lambda: run.process.poll() is not None or run.has_said("'short' died"), "what the host has to say")
+    (tmp_path / "heard").touch()
     assert run.finish() == 0, run.errors
     assert run.errors.count("HAL: component 'short' died without leaving; removed") == 1
 

@@ -23,6 +23,7 @@ PACKAGED_NML = ROOT / "nml" / "linuxcnc.nml"
 MILL = ROOT / "configs" / "sim" / "mill"
 PROGRAMS = ROOT / "configs" / "sim" / "nc_files"
 PATIENCE = 60.0  # s; a watchdog, not a claim about speed
+MOST_SAID = 1 << 20  # bytes of stderr that are looked at
 HEARTBEAT = "EMCMOT.HEARTBEAT_TIMEOUT"
 TOLERANT_HEARTBEAT_S = 0.5  # a busy computer may hold up one process for longer than the 0.1 s of a machine
 OF_THE_COMPUTER = ("Unexpected realtime delay:", " cannot keep its period of ")
@@ -103,6 +104,10 @@ class Run:
         assert self._output is not None
         lines = self._output[1].splitlines(keepends=True)
         return "".join(line for line in lines if not any(words in line for words in OF_THE_COMPUTER))
+
+    def has_said(self, words: str) -> bool:
+        """Whether this is on its stderr by now; its processes share the file's place, which must stay as it is."""
+        return words.encode() in os.pread(self._said[1].fileno(), MOST_SAID, 0)
 
     def finish(self, timeout: float = 120.0) -> int:
         """Wait for its end; the exit code."""
