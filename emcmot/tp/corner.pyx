@@ -7,7 +7,7 @@ constant acceleration, which is the fastest way round a corner between axes. It 
 segments in its middle: for lines by d |r t2 - t1| / 4.
 """
 
-from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
+from libc.math cimport INFINITY, fabs, fmax, fmin
 
 from emcmot.tp.follow cimport follows_position
 from emcmot.tp.geometry cimport derivatives, length, position

@@ -50,11 +50,20 @@ cdef inline Cell* _cell(const TpState* tp, int64_t index) noexcept nogil:
 
 # --- one span ---------------------------------------------------------------------------------------------------------
 
+cdef inline void _meet(double h, double other, int side, double* by_w, double* by_a) noexcept nogil:
+    """How w and a depend on the coefficients where a span meets another: that before it, side 0, or behind it, side 2."""
+    cdef double inverse = 1.0 / (h + other)
+    by_w[side] = h * inverse
+    by_w[1] = other * inverse
+    by_a[side] = (side - 1) * inverse
+    by_a[1] = (1 - side) * inverse
+
+
 cdef void _look(const TpState* tp, int64_t index, double share, Local* local) noexcept nogil:
     """A span of the plan that is being made, changed by a share of the step."""
     cdef const Span* span = _span(tp, index)
     cdef double c[3]
-    cdef double before = 0.0, behind = 0.0, inverse
+    cdef double before = 0.0, behind = 0.0
     cdef int place, j
     memset(local, 0, sizeof(Local))
     c[0] = c[1] = c[2] = _cell(tp, index).fresh + share * _cell(tp, index).change
@@ -66,17 +75,9 @@ cdef void _look(const TpState* tp, int64_t index, double share, Local* local) no
         c[2] = _cell(tp, index + 1).fresh + share * _cell(tp, index + 1).change
     local.by_w[0][1] = local.by_w[2][1] = 1.0
     if before > 0.0:
-        inverse = 1.0 / (before + span.h)
-        local.by_w[0][0] = span.h * inverse
-        local.by_w[0][1] = before * inverse
-        local.by_a[0][0] = -inverse
-        local.by_a[0][1] = inverse
+        _meet(span.h, before, 0, local.by_w[0], local.by_a[0])
     if behind > 0.0:
-        inverse = 1.0 / (behind + span.h)
-        local.by_w[2][2] = span.h * inverse
-        local.by_w[2][1] = behind * inverse
-        local.by_a[2][1] = -inverse
-        local.by_a[2][2] = inverse
+        _meet(span.h, behind, 2, local.by_w[2], local.by_a[2])
     for j in range(3):
         local.by_w[1][j] = 0.25 * (local.by_w[0][j] + local.by_w[2][j]) + (0.5 if j == 1 else 0.0)
         local.by_a[1][j] = 0.5 * (local.by_a[0][j] + local.by_a[2][j])

@@ -158,7 +158,10 @@ cdef void _control(const TpState* tp, const double* k, double* q) noexcept nogil
 
 
 cdef int fit_next(TpState* tp) noexcept nogil:
-    """Add the next knot of the run, and the kink that it completes; 0 where more of the moves must be known first."""
+    """Add the next knot of the run, and the kink that it completes; 0 where more of the moves must be known first.
+
+    The closer the knots, the nearer is the path to the moves, so that one of the distances tried fits.
+    """
     cdef const Segment* last = _seg(tp, tp.seg_built - 1)
     cdef double knot = tp.knots[KNOTS - 1], left = last.begin - knot, step, end
     cdef int64_t k
@@ -251,7 +254,7 @@ cdef int _fits(const TpState* tp) noexcept nogil:
 
 cdef int _near(
     const TpState* tp, double start, double h, const double (*q)[AXES], const double* bend, double share) noexcept nogil:
-    """Whether a cubic stays near the moves: where a move or the cubic begins, and in the middle of what follows.
+    """Whether a cubic stays near the moves: at both ends of what it passes of each, and in the middle.
 
     `q`: position and derivatives at its start; `bend`: second derivative at its end.
     """

@@ -27,10 +27,9 @@ cdef enum:
     PLACES = 5                   # of a span, at which limits are looked at
     SPANS_PER_PERIOD = 5000      # bound of the way of one period,
     SPANS_OF_CHANGE = 400        # and of the path on which the rate changes
-    LITTLE = 64                  # spans without a plan
 
 cdef double ROUNDING = 4e-15     # of u, relative to the length of its span
-cdef double STANDING = 0.005     # jerk dt^2: a held machine that is no faster stands
+cdef double STANDING = 0.001     # jerk dt^2; a rate as near its goal is there: what that adds to the jerk is less than plans leave
 cdef double CLOSER = 0.3         # of the way to a higher rate: what is left there is used now
 cdef double LEFT = 0.995         # of accelerations and jerks, may be used
 cdef double TURNING = 0.5        # of the jerk that the plan leaves, for the rate's change; the rest changes that change

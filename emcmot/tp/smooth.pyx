@@ -7,7 +7,7 @@ would have to slow down for want of path, because what is laid to its end is a s
 Called by advance; jerk moves the machine along the spans.
 """
 
-from libc.math cimport INFINITY, fabs, fmax, fmin, sqrt
+from libc.math cimport INFINITY, fmax, fmin, sqrt
 from libc.stdint cimport int64_t
 from libc.string cimport memcpy, memset
 
@@ -134,7 +134,6 @@ cdef void _go_round(TpState* tp) noexcept nogil:
 cdef void _join(TpState* tp, Segment* seg) noexcept nogil:
     """Let a segment be the last of the chain; its begin and pace are known."""
     cdef double half = tp.corner.to - tp.corner.place
-    cdef int k
     tp.seg_built += 1
     tp.body_goal = seg.begin + _way(seg)
     tp.end = END_OPEN

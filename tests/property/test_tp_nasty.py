@@ -10,6 +10,7 @@ FIRST = int(os.environ.get("PYEMC_SEED", "0"))
 SEEDS = int(os.environ.get("PYEMC_EXAMPLES", "6"))  # programs of each kind; hundreds find more
 PASSAGES = 14
 COMMANDS = 25
+FAILED_ONCE = (9110, 13052, 21305)  # under limited jerk: two that never ended, one that broke a limit
 KINDS = pytest.mark.parametrize("jerk", [False, True], ids=["acceleration", "jerk"])
 
 
@@ -24,4 +25,10 @@ def test_a_nasty_program_runs_to_its_end_within_every_limit(seed, jerk):
 @pytest.mark.parametrize("seed", range(FIRST + 100, FIRST + 100 + SEEDS))
 def test_whatever_the_operator_does_meanwhile_breaks_no_limit(seed, jerk):
     program = Nasty(seed, jerk)
+    program.check(program.run(PASSAGES, COMMANDS))
+
+
+@pytest.mark.parametrize("seed", FAILED_ONCE)
+def test_a_program_that_failed_once_keeps_every_limit_and_ends(seed):
+    program = Nasty(seed, jerk=True)
     program.check(program.run(PASSAGES, COMMANDS))
